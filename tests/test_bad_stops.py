@@ -113,10 +113,7 @@ def test_scenes(name):
     assert key in said[0] and allowed in said[0], said
 
 
-FOLLOWED = "continue: {parameter: {b: [4, 6]}, from: {itinerary: R}}\n"
-COMMANDS = {name: SCENES[name] for name in ("stiffness negative", "R and stiffness", "physical: release unknown")} | {
-    "branches": (f"system: {{{PAPER}, {SOFT}, release: force}}\n{FOLLOWED}", "system.release", "displacement"),
-}  # fmt: skip
+COMMANDS = {name: SCENES[name] for name in ("stiffness negative", "R and stiffness", "physical: release unknown")}
 
 
 @pytest.mark.parametrize("name", COMMANDS)
@@ -163,13 +160,8 @@ CALLS = {
         ),
         "stop",
     ),
-    "a periodic orbit": (lambda: vs.periodic_orbit(soft().replace(release="force"), itinerary="R"), "displacement"),
     "orbits born at grazing": (lambda: vs.born_at_grazing(soft()), "rigid"),
     "the mapping": (lambda: vs.discontinuity_map(soft()), "rigid"),
-    "windows": (
-        lambda: vs.windows(vs.sweep(soft().replace(release="force"), {"b": [5, 6]}, transient=1, record=2)),
-        "it must be displacement",
-    ),
 }  # fmt: skip
 
 

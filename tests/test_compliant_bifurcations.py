@@ -115,13 +115,15 @@ def test_windows_of_one_elastic_stop():
             assert np.abs(last[0] - last[1]).max() < 1e-3
 
 
-def test_windows_need_release_by_displacement():
-    data = vs.sweep(one_mass(c_stop=1, release="force"), {"omega": [0.8, 0.9]}, transient=100, record=20)
-    with pytest.raises(ValueError, match="release"):
-        vs.windows(data)
-
-
-@pytest.mark.parametrize("seeds", [range(1, 2), *slow_cases(range(4)), pytest.param(range(12), marks=pytest.mark.soak)])
+@pytest.mark.parametrize(
+    "seeds",
+    [
+        range(1, 2),
+        *slow_cases(range(4), range(1000, 1004)),
+        pytest.param(range(12), marks=pytest.mark.soak),
+        pytest.param(range(1000, 1010), marks=pytest.mark.soak),
+    ],
+)
 def test_random_branches_from_several_starts(seeds):
     counted = 0
     for seed in seeds:

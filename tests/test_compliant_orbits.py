@@ -10,17 +10,20 @@ from support import slow_cases
 from support.compliant_bifurcations import PAPER, one_mass, paper
 
 import vibro_sweep as vs
-from vibro_sweep.scene import SceneError
-from vibro_sweep.scene.continuation import parse_continuation
 
 
 def in_thirty_digits(orbit):
-    """State at t = 0, times of touch and release, and multipliers of the orbit, and what the reference has of them."""
+    """State at t = 0, times of touch and release, and multipliers of the orbit, and what the reference has of them.
+
+    By force contacts end where the stop would pull at its place.
+    """
     length, contacts = orbit.period * orbit.system.period, np.sort(orbit.contacts, order="t_touch")
     t = contacts["t_touch"] % length
     order = np.argsort(t)
     times = np.column_stack([t, t + contacts["t_release"] - contacts["t_touch"]])[order].ravel()
-    exact = ContactOrbit(orbit.system.linear, contacts["side"][order], orbit.period)
+    q = orbit.system.linear
+    pulled = bool(np.all(q.c_high * contacts["v_release"] + q.p_high < 0))
+    exact = ContactOrbit(q, contacts["side"][order], orbit.period, pulled=pulled)
     state, known, multipliers = exact.solve(orbit.state, times)
     multipliers = np.array([complex(one) for one in multipliers])
     found = [orbit.state, times, np.sort_complex(orbit.multipliers)]
@@ -31,6 +34,7 @@ def in_thirty_digits(orbit):
     "system, itinerary",
     [
         (one_mass(), "R"),
+        (one_mass(c_stop=0.5, preload=0.05, release="force"), "R"),
         *slow_cases(
             (paper(4, 1e4), "R"),
             (paper(2, 1e2, preload=0.5), "LR"),
@@ -38,6 +42,11 @@ def in_thirty_digits(orbit):
             (paper(2, 1e6), "LR"),
             (paper(5, 1e3, z=0.5), "R"),
             (vs.System(**PAPER, b=4, k_stop=1e4, c_stop=3, k_stop_left=50, preload_left=0.1), "LR"),
+            (one_mass(c_stop=2, release="force"), "R"),
+            (one_mass(c_stop=0.5, preload=0.5, release="force"), "R"),
+            (paper(2, 1e4, z=0.2, release="force"), "LR"),
+            (paper(4, 1e4, release="force"), "R"),
+            (paper(2, 1e6, z=0.8, release="force"), "LR"),
         ),
     ],
 )
@@ -160,16 +169,3 @@ def test_files_hold_them(tmp_path):
     assert [one.type for one in read.special] == [one.type for one in branch.special]
     assert read.special[0].orbit.state == pytest.approx(branch.special[0].orbit.state, abs=1e-9)
     assert branch.plot() is not None and orbit.plot() is not None
-
-
-def test_what_is_refused():
-    system = paper(4, 1e2, release="force")
-    with pytest.raises(ValueError, match="release"):
-        vs.periodic_orbit(system, itinerary="R")
-    scene = (
-        "system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, b: 4, k_stop: 100RELEASE}\n"
-        "continue: {from: {itinerary: R}, parameter: {b: [3, 5], omega: [0.6, 0.7]}}\n"
-    )
-    assert parse_continuation(scene.replace("RELEASE", "")).system.k_stop == 100
-    with pytest.raises(SceneError, match="release"):
-        parse_continuation(scene.replace("RELEASE", ", release: force"))

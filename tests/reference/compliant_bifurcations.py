@@ -23,6 +23,7 @@ def moved(q, slopes, dp):
     found = {}
     for name, value in q._asdict().items():
         if isinstance(value, bool) or name == "by_force":
+            found[name] = bool(value)
             continue
         change = [getattr(slope, name) for slope in slopes]
         if isinstance(value, np.ndarray):
@@ -39,10 +40,11 @@ class Bifurcation:
     conditions : "fold", "flip", "pair", "double_1", "double_-1", "cusp"
     touches : the stops (+1, -1) of turning points
     angles : of pairs, where these are known; None: another unknown each
+    pulled : as of `ContactOrbit`
     """
 
-    def __init__(self, q, slopes, sides, periods, sigma, conditions=(), touches=(), angle=None):
-        self.q, self.slopes, self.of = q, slopes, (list(sides), periods, sigma)
+    def __init__(self, q, slopes, sides, periods, sigma, conditions=(), touches=(), angle=None, pulled=False):
+        self.q, self.slopes, self.of = q, slopes, (list(sides), periods, sigma, pulled)
         self.conditions, self.touches, self.angle = conditions, touches, angle
         self.m = 2 * len(q.normal) + 2 * len(sides)
 

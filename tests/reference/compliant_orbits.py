@@ -3,7 +3,8 @@
 In the coordinates of the masses y = (x, v, sin, cos, 1), y' = A y with one A for free flight and one for each pressed
 stop. The unknowns are the state at t = 0 and the times of all touches and releases; Newton's method keeps the Jacobian
 of the guess, from differences. Multipliers are eigenvalues of flights and saltation matrices 1 + (F+ - F-) n/(n F-),
-with F the rates of y before and behind an event, and n the row of the gap.
+with F the rates of y before and behind an event, and n the row that vanishes at it: of the gap less the stop, or of the
+force at the end of a contact that ends by it, after which the stop is taken to relax unseen.
 """
 
 from mpmath import mp, mpf
@@ -13,13 +14,14 @@ DIGITS = 45
 
 class ContactOrbit:
     """q: a `Linear` of floats, which count as exact, or of numbers of mpmath; sides: of the contacts, within so many
-    periods of the force. sigma: the motion is repeated after them, or (-1) mirrored."""
+    periods of the force. sigma: the motion is repeated after them, or (-1) mirrored. pulled: whether contacts with a
+    preload end by their force where the oscillator's do, before the mass is back at the stop."""
 
-    def __init__(self, q, sides, periods, sigma=1):
+    def __init__(self, q, sides, periods, sigma=1, pulled=False):
         with mp.workdps(DIGITS):
-            self._build(q, sides, periods, sigma)
+            self._build(q, sides, periods, sigma, pulled)
 
-    def _build(self, q, sides, periods, sigma):
+    def _build(self, q, sides, periods, sigma, pulled):
         self.q, self.sides, self.N, self.sigma = q, list(sides), len(q.normal), sigma
         self.length = periods * 2 * mp.pi / mpf(q.omega)
         N, self.size = self.N, 2 * self.N + 3
@@ -37,7 +39,11 @@ class ContactOrbit:
                         A[N + i, j] -= push[i] * mpf(k) * normal[j]
                         A[N + i, N + j] -= push[i] * mpf(c) * normal[j]
                     A[N + i, 2 * N + 2] += push[i] * (mpf(k) * mpf(stop) - side * mpf(p))
-                self.pressed[side] = A, mpf(stop)
+                touch, force = mp.matrix(1, self.size), mp.matrix(1, self.size)
+                for i in range(N):
+                    touch[i], force[i], force[N + i] = normal[i], mpf(k) * normal[i], mpf(c) * normal[i]
+                touch[2 * N + 2], force[2 * N + 2] = -mpf(stop), side * mpf(p) - mpf(k) * mpf(stop)
+                self.pressed[side] = A, touch, force if q.by_force and c > 0 and (p == 0 or pulled) else touch
         self.gap = mp.matrix(1, self.size)
         for i in range(N):
             self.gap[i] = normal[i]
@@ -60,21 +66,21 @@ class ContactOrbit:
         return mp.matrix([*u[: 2 * self.N], mp.sin(tau), mp.cos(tau), 1])
 
     def _pieces(self, u):
-        """(A, duration, side of the event at the end or 0, A behind it)."""
+        """(A, duration, row that vanishes at the event at the end or None, A behind it)."""
         times, before = u[2 * self.N :], mpf(0)
         for k, side in enumerate(self.sides):
-            A, stop = self.pressed[side]
-            yield self.free, times[2 * k] - before, stop, A
-            yield A, times[2 * k + 1] - times[2 * k], stop, self.free
+            A, touch, release = self.pressed[side]
+            yield self.free, times[2 * k] - before, touch, A
+            yield A, times[2 * k + 1] - times[2 * k], release, self.free
             before = times[2 * k + 1]
         yield self.free, self.length - before, None, None
 
     def residual(self, u):
         y, rows = self._begin(u), []
-        for A, length, stop, _ in self._pieces(u):
+        for A, length, row, _ in self._pieces(u):
             y = mp.expm(A * length) * y
-            if stop is not None:
-                rows.append((self.gap * y)[0] - stop)
+            if row is not None:
+                rows.append((row * y)[0])
         return mp.matrix([*(self.sigma * y[i] - u[i] for i in range(2 * self.N)), *rows])
 
     def solve(self, state, times, steps=12):
@@ -105,12 +111,12 @@ class ContactOrbit:
     def closure(self, u):
         """The matrix whose eigenvalues are the multipliers."""
         y, product = self._begin(u), mp.eye(self.size)
-        for A, length, stop, behind in self._pieces(u):
+        for A, length, row, behind in self._pieces(u):
             E = mp.expm(A * length)
             y, product = E * y, E * product
-            if stop is not None:
+            if row is not None:
                 before, after = A * y, behind * y
-                product += (after - before) * (self.gap * product) / (self.gap * before)[0]
+                product += (after - before) * (row * product) / (row * before)[0]
         n = 2 * self.N
         return self.sigma * product[:n, :n]
 
@@ -127,11 +133,11 @@ class ContactMap:
         o, t = self.orbit, mpf(0)
         y = o._begin([a + b for a, b in zip(self.centre, change, strict=True)])
         for k, guess in enumerate(self.times):
-            pressed, stop = o.pressed[o.sides[k // 2]]
-            A, start = pressed if k % 2 else o.free, y
+            pressed, touch, release = o.pressed[o.sides[k // 2]]
+            A, row, start = (pressed, release, y) if k % 2 else (o.free, touch, y)
             for _ in range(30):
                 y = mp.expm(A * (guess - t)) * start
-                step = ((o.gap * y)[0] - stop) / (o.gap * A * y)[0]
+                step = (row * y)[0] / (row * A * y)[0]
                 guess -= step
                 if abs(step) < mpf(10) ** (-mp.dps + 6):
                     break

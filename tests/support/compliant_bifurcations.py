@@ -59,8 +59,11 @@ def branch_of(name):
     return vs.continue_orbit(vs.periodic_orbit(system, itinerary=itinerary), number, bounds)
 
 
-def distance_in_digits(special) -> tuple[np.ndarray, float]:
-    """By how much the parameters of a special point differ from those of the reference, and its last change."""
+def distance_in_digits(special, pulled=False) -> tuple[np.ndarray, float]:
+    """By how much the parameters of a special point differ from those of the reference, and its last change.
+
+    pulled : whether its contacts end by their force although there is a preload
+    """
     system, solution = special.orbit.system, special.orbit._solution
     names, family = list(special.parameters), family_of(system)
     q, P = family.linear, solution.P
@@ -103,6 +106,7 @@ def distance_in_digits(special) -> tuple[np.ndarray, float]:
         CONDITIONS[special.type],
         sides,
         ANGLES.get(special.type),
+        pulled,
     )
     off, change = exact.solve(state, around, touched, theta)
     return np.array(off), change

@@ -14,22 +14,23 @@ from vibro_sweep.analysis.branches.branch_arrays import arrays_of, orbit_at
 from vibro_sweep.model.bifurcations import BY_NAME
 
 MODELS = ("two_mass", "one_mass", "chain", "linear")
+BY_FORCE = 1000  # seeds from there on have `release: force`
 ON_CIRCLE = 1e-6  # of | |mu| - 1 |: so near to it counts are rounding
 
 
-def drawn_stops(model: str, rng):
+def drawn_stops(model: str, rng, release: str):
     """An oscillator as of `drawn_oscillator`, its stops compliant: soft or stiff, some damped, some preloaded."""
     system = drawn_oscillator(model, rng)
     k, z = 10 ** rng.uniform(0.5, 4), rng.choice([0.0, rng.uniform(0.01, 0.4)])
     rigid = dict.fromkeys(("R", "R_left")) if system.numbers.get("R_left") is not None else {"R": None}
     preload = float(rng.choice([0.0, 0.0, rng.uniform(0, 0.3)]))
-    return system.replace(**rigid, k_stop=k, c_stop=2 * z * np.sqrt(k), preload=preload)
+    return system.replace(**rigid, k_stop=k, c_stop=2 * z * np.sqrt(k), preload=preload, release=release)
 
 
 def drawn_case(seed: int) -> Case | None:
     """An attractor of a drawn oscillator, and the number in which its branch is followed."""
     rng = np.random.default_rng(seed)
-    system = drawn_stops(MODELS[seed % len(MODELS)], rng)
+    system = drawn_stops(MODELS[seed % len(MODELS)], rng, "displacement" if seed < BY_FORCE else "force")
     for _ in range(4):
         orbit = recorded(system, rng)
         if orbit is not None and orbit.ok and 0 < len(orbit.itinerary) <= MOST_IMPACTS:

@@ -27,7 +27,6 @@ from vibro_sweep.model.arguments import check_type
 from vibro_sweep.model.branch_file import WINDOWS, columns_of
 from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.files import checked_path, file_to_write
-from vibro_sweep.model.linear import followable_family_of
 from vibro_sweep.model.refusals import not_allowed
 from vibro_sweep.model.state import state
 from vibro_sweep.model.window_columns import UNVISITED
@@ -149,7 +148,6 @@ def rows_in(data: Contents, parameter: str | None) -> list[Row]:
     check_data(data)
     system = parse_scene(data.attrs["scene"]).system
     system = system.replace(**{name: value for name, value in data.chosen.items() if name in system.described})
-    followable_family_of(system)
     return list(rows_of(data, system, chosen_key(data, system, parameter)))
 
 

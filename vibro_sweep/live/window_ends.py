@@ -20,7 +20,6 @@ from vibro_sweep.model.outcomes import REASONS
 from vibro_sweep.model.parameters import range_of
 from vibro_sweep.model.state import state
 from vibro_sweep.model.status import STATUSES, is_valid
-from vibro_sweep.model.stops import BY_FORCE
 
 MOST_POINTS = 300  # of a branch that is drawn
 NEAR = 1e-9  # relative: grazes nearer than this are the same
@@ -36,8 +35,6 @@ def window_message(
     """
     if found.mapping:
         return {}, {"reason": "windows are those of the oscillator itself, and this is its mapping"}
-    if found.system.linear.by_force:
-        return {}, {"reason": f"no window here: release must be {BY_FORCE}"}
     if found.period == 0:
         return {}, {"reason": _not_periodic(found)}
     bounds = _bounds(view, found)

@@ -63,6 +63,9 @@ TYPES = (
                        "another parameter."),
     Bifurcation("split", "within a contact the mass comes back to its stop: the contact is split in two",
                 advice="Orbits with one contact more exist beyond: `simulate` finds them where they attract."),
+    Bifurcation("unrelaxed", "with `release: force` a stop is touched before it has relaxed: no bifurcation",
+                advice="The motion goes on: `simulate` and `sweep` compute it. Branches need stops that are at rest "
+                       "again at their next touch."),
 )  # fmt: skip
 BY_NAME = {one.name: one for one in TYPES}
 CODES = {one.name: code for code, one in enumerate(TYPES)}
@@ -122,7 +125,7 @@ CODIMENSION_TWO = (
           sigma=-1, begins=("graze",), ends=("graze",)),
     Point("neimark_sacker_graze", "NSGR", "a Neimark-Sacker point at a graze",
           (("torus", "vanishes"), ("torus", "touches"), ("graze", "pair"))),
-    Point("resonant_graze", "RG", "a graze whose square root vanishes",
+    Point("resonant_graze", "RG", "a graze whose square root vanishes, or whose corner has a multiplier 1 or -1",
           (("fold", "vanishes"), ("flip", "vanishes"), ("graze", "plus"), ("graze", "minus")), ends=("graze",)),
     Point("double_graze", "GRGR", "two grazes of one orbit", (("graze", "vanishes"), ("graze", "touches"))),
     Point("sticking_graze", "STGR", "another impact grazes at the onset of sticking",
@@ -130,6 +133,8 @@ CODIMENSION_TWO = (
     Point("closed", "", "the curve comes back to itself"),
     Point("boundary", "", "boundary of the region that was looked at"),
     Point("failed", "", "the curve could not be followed any further"),
+    Point("split", "", "within a contact the mass comes back to its stop: the contact is split in two"),
+    Point("unrelaxed", "", "with `release: force` a stop is touched before it has relaxed: no bifurcation"),
 )  # fmt: skip
 CODES_OF_CURVES = {one.name: code for code, one in enumerate(CODIMENSION_TWO)}
 

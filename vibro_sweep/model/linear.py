@@ -20,7 +20,7 @@ from vibro_sweep.model.parameters import STOP_NUMBERS
 from vibro_sweep.model.refusals import not_allowed
 from vibro_sweep.model.stacks import least_squares
 from vibro_sweep.model.steady import gap_responses, grazing_phases, responses, static_states, steady_amplitudes
-from vibro_sweep.model.stops import BY_FORCE, stop_of, why_rigid
+from vibro_sweep.model.stops import stop_of, why_rigid
 
 MATRICES = ("M", "K", "C", "normal", "omega")  # fields that move free modes,
 FORCED = (*MATRICES, "constant", "sine", "cosine")  # the steady motion too,
@@ -314,14 +314,6 @@ def rigid_family_of(system, what: str) -> Family:
     family = family_of(system)
     if family.built.compliant:
         raise ArgumentError(not_allowed("system", system, f"with rigid stops: {why_rigid(what)}"))
-    return family
-
-
-def followable_family_of(system) -> Family:
-    """The same, for periodic orbits. Raises ValueError where contacts end by their force: such stops go on relaxing."""
-    family = family_of(system)
-    if family.built.by_force:
-        raise ArgumentError(not_allowed("release", "force", BY_FORCE))
     return family
 
 

@@ -22,6 +22,11 @@ ORBITS = {  # `PeriodicOrbit.status`
         "There is no such motion at these numbers: another itinerary holds here. `continue_orbit` from a value where "
         "the orbit exists says at which graze it ends.",
     ),
+    "unrelaxed": Outcome(
+        "a stop is touched before it has relaxed from the contact before: `release: force` is not computed there",
+        "Simulate it (`simulate`, `sweep`), or give the stop less damping: it relaxes like e^(-k_stop t/c_stop), and "
+        "has to be at rest to below rounding.",
+    ),
     "sticking": Outcome(
         "the orbit rests on a stop after infinitely many impacts: they are not a finite list",
         "Simulate it (`simulate`, `sweep`): rests are computed there. `sticking_onset` says where such rests begin.",

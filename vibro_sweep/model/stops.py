@@ -12,7 +12,6 @@ NUMBERS = tuple(one.name for law in LAWS.values() for one in law.numbers_of_both
 RIGID_ALONE = (
     "with k_stop there are sweeps of the flow, `simulate`, `lyapunov`, periodic orbits, branches, curves and windows"
 )
-BY_FORCE = "displacement, or left out, for periodic orbits and windows so far: after its force a stop goes on relaxing"
 NEEDS_IMPACTS = {  # what rigid stops have alone, and why
     "map": "the discontinuity mapping takes the place of impacts",
     "period map": "the derivatives of a period map are those of impacts",

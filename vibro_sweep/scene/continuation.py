@@ -11,7 +11,6 @@ from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.arguments import checked_count
 from vibro_sweep.model.parameters import ParameterError
 from vibro_sweep.model.refusals import cut, not_allowed
-from vibro_sweep.model.stops import BY_FORCE
 
 from .continue_form import ORIGINS
 from .fields import Form
@@ -151,8 +150,6 @@ def _continuation_of(data: Any, name: str, text: str) -> Continuation:
     missing = first and given[0] in _IN_FILES and getattr(form.system, first, None) is None
     system, more = system_of(form, {first: ranges[first]} if missing else {}, kind, masses)
     problems += more
-    if system is not None and system.linear.by_force:
-        problems.append(problem("system.release", "force", f"must be {BY_FORCE}"))
     for key, limits in ranges.items() if system is not None else ():
         problems += [line for value in limits for line in _outside(system, key, value)]
         value = system.numbers[key]

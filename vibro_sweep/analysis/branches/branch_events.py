@@ -32,6 +32,8 @@ def ends_between(curve: SolutionCurve, bounds, a: Point, b: Point) -> list[Event
             events.append(Event("sticking", lambda point, i=i: point.releases[i]))
     if a.stays > 0 >= b.stays:
         events.append(Event("split" if np.any(q.is_compliant(curve.orbit.sides)) else "sticking", _stays))
+    if a.relaxed > 0 >= b.relaxed:
+        events.append(Event("unrelaxed", lambda point: min(point.relaxed, 1.0)))
     if b.stop_distance <= 0 < a.stop_distance or _passes(b):
         most = 2 * abs(a.stop_distance) if math.isfinite(a.stop_distance) else 1.0
         test = _positive_at(a, lambda point: min(point.stop_distance, most))

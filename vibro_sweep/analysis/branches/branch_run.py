@@ -206,12 +206,13 @@ class BranchRun:
         self._add_solution(found.place.value, special.orbit._solution.repeated(2))
         self.special.append(special)
 
-    def _at(self, of_type: str, point: Point, error: float, **more) -> SpecialPoint:
+    def _at(self, of_type: str, point: Point, error: float, multipliers=None, **more) -> SpecialPoint:
         system = self.system.replace(**{self.name: point.value})
         orbit, kind = orbit_of(system, point.solution), KINDS.get(of_type)
+        multipliers = point.solution.multipliers if multipliers is None else multipliers
         if kind in (FLIP, TORUS):
             more["criticality"] = criticality(point.solution, kind, self.name)
-        return SpecialPoint(of_type, {self.name: point.value}, orbit, point.solution.multipliers, error, **more)
+        return SpecialPoint(of_type, {self.name: point.value}, orbit, multipliers, error, **more)
 
     def _end(self, event: Event, point: Point, error: float) -> SpecialPoint:
         if event.type != "graze":
@@ -228,11 +229,12 @@ class BranchRun:
         slope = abs(graze.distance_slope)
         if slope > 0:
             error += float(16 * np.finfo(float).eps * point.solution.size_of_gap / slope)
-        impact = None
+        impact, multipliers = None, None
         if index is not None:
+            multipliers = graze.multipliers
             side, impact = stop_and_impact(point.solution, index)
         return self._at(
-            "graze", point, error, stop=side, kind=graze.kind, impact=impact,
+            "graze", point, error, multipliers, stop=side, kind=graze.kind, impact=impact,
             direction=1 if graze.distance_slope > 0 else -1,
         )  # fmt: skip
 

@@ -79,7 +79,7 @@ def is_real(point: Point | FreePoint, least: float = 0.0) -> bool:
     """Whether all impulses push and all flights stay inside, by more than the share `least`."""
     s = point.solution
     length = least * s.size_of_gap
-    rests = not s.K or (bool(np.all(point.releases > 0)) and point.stays > 0)
+    rests = not s.K or (bool(np.all(point.releases > 0)) and point.stays > 0 and point.relaxed > 0)
     return bool(np.all(s.pushes > s.family.linear.omega * length)) and s.stop_distance > length and rests
 
 

@@ -76,6 +76,7 @@ class Graze:
     index: int  # of that impact in `touching`
     distance_slope: float  # d(distance from the stop)/dp along the orbits without it
     speed_slope: float  # d(impact speed)/dp along the orbits with it
+    multipliers: np.ndarray | None = None  # of the orbits with it, where all of the equations' are singular
 
     @property
     def kind(self) -> str:
@@ -110,14 +111,23 @@ def graze_at(solution: Solution, name: str, impact: int | None) -> Graze:
     side, q = touching.sides[index], solution.family.linear
     distance_slope = Linearised(touching, solution.family.derivative(name), gone).distance_slope(index)
     if is_smooth(q, side):  # the speed grows like the square root of the distance passed
-        return Graze(without, touching, index, distance_slope, math.copysign(np.inf, -distance_slope))
+        # and where it ends by force the damper adds to the motion what is proportional to that distance
+        begun = Linearised(touching, solution.family.derivative(name), gone, index)
+        speed_slope = math.copysign(np.inf, -begun.distance_slope(index))
+        return Graze(without, touching, index, distance_slope, speed_slope, begun.equations.multipliers())
     speed_slope = -side * slopes(touching, name)[touching.K + index] / one_plus_R(q, [side])[0]
     return Graze(without, touching, index, distance_slope, float(speed_slope))
 
 
 def is_smooth(q: Linear, side: int) -> bool:
-    """Whether a contact with this stop begins without a jump of the force: orbits go on through its graze."""
+    """Whether a contact with this stop begins like the square root of what passes the stop: orbits go on through its
+    graze, or turn back where it ends by force."""
     return bool(q.is_compliant(side)) and (q.p_high if side > 0 else q.p_low) == 0
+
+
+def has_corner(q: Linear, side: int) -> bool:
+    """Whether multipliers jump at the graze of a contact with this stop, by its damper."""
+    return q.by_force and is_smooth(q, side) and (q.c_high if side > 0 else q.c_low) > 0
 
 
 def inserted(solution: Solution, slow=()) -> tuple[Solution, int]:

@@ -139,7 +139,7 @@ class Oscillators:
         r["centre"], r["reach"], r["degree"] = centre, reach, degrees
         r["fit"][: c.shape[0], : c.shape[1]] = c
         r["fit"][0, 0][np.isinf(at_centre)] = at_centre[np.isinf(at_centre)]
-        r["half_turns"] = self.half_periods
+        r["half_turns"], r["by_force"] = self.half_periods, q.by_force
         r["width"] = flow(q).width * self.units.rate
         r["middle_weights"], r["rest_weights"] = middle_weights(float(r["width"]))
         longest = np.pi * self.half_periods / values[..., -1].min()

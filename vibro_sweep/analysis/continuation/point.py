@@ -75,6 +75,11 @@ class Point(Place):
         c, q = self.curve.problem, self.curve.orbit.family.linear
         return float(min(self.jumps[c.rests & ~q.is_compliant(c.sides)].min(initial=np.inf), self.tests[TEST.hold]))
 
+    @property
+    def relaxed(self) -> float:
+        """Above 0 where each stop that a contact left by force is at rest again at its next touch."""
+        return float(self.tests[TEST.relaxed])
+
 
 def along(a: Point, b: Point) -> float:
     """The distance of b ahead of a, along the tangent at a."""

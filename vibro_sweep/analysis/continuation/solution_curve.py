@@ -236,7 +236,8 @@ class SolutionCurve:
         pushes = np.where(self.problem.rests, 1.0, -self.problem.sides) * place.jumps
         if self.problem.kind >= GRAZE:
             pushes = np.delete(pushes, self.problem.index)
-        return bool(np.all(pushes > 0) and place.tests[TEST.stop_distance] > -TOUCHING)
+        holds = min(place.tests[TEST.hold], place.tests[TEST.relaxed]) > -TOUCHING
+        return bool(np.all(pushes > 0) and place.tests[TEST.stop_distance] > -TOUCHING and holds)
 
     def family(self, place: Place) -> Family:
         return self.oscillators.at(place.p)

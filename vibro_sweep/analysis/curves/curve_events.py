@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.special import is_smooth
+from vibro_sweep.analysis.branches.special import has_corner, is_smooth
 from vibro_sweep.analysis.continuation.events import Event, LocatedEvent
 from vibro_sweep.analysis.continuation.secant import error_of, root
 from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve
@@ -16,6 +16,7 @@ from vibro_sweep.engine.continuation.workspace import CURVE_TESTS, NAMES, TEST, 
 from vibro_sweep.model.bifurcations import CODIMENSION_TWO
 
 # (kind of curve, what changes its sign) -> types, by the sigma of their orbits; angles of a pair
+ENDS_OF_CONTACTS = {"split": TEST.hold, "unrelaxed": TEST.relaxed}  # where a curve ends
 VANISHES, TOUCHES = "vanishes", "touches"
 
 
@@ -48,13 +49,17 @@ def events_between(curve: SolutionCurve, a: Place, b: Place) -> list[Event]:
             events.append(Event(type_at(curve, i), lambda place, i=i, size=size: place.tests[i] / size, i))
     for i in range(curve.K):
         if a.jumps[i] * b.jumps[i] < 0 and not (kind >= GRAZE and i == curve.problem.index):
-            smooth = is_smooth(curve.orbit.family.linear, int(curve.problem.sides[i]))
+            stop = curve.orbit.family.linear, int(curve.problem.sides[i])
+            smooth = is_smooth(*stop) and not has_corner(*stop)  # multipliers are those without it
             name = type_at(curve, TOUCHES if smooth else VANISHES)
             events.append(Event(name, lambda place, i=i: place.jumps[i], impact=i))
     least, most = sorted(place.tests[TEST.stop_distance] for place in (a, b))
     if least < -TOUCHING and most > TOUCHING:
         name = type_at(curve, TOUCHES)
         events.append(Event(name, lambda place: min(place.tests[TEST.stop_distance], 1.0), touches=True))
+    for name, i in ENDS_OF_CONTACTS.items():
+        if min(a.tests[i], b.tests[i]) <= 0 < max(a.tests[i], b.tests[i]):
+            events.append(Event(name, lambda place, i=i: min(place.tests[i], 1.0), touches=True))
     if kind == TORUS:
         for name, angle in ANGLES.items():
             if (a.p[THETA] - angle) * (b.p[THETA] - angle) < 0:

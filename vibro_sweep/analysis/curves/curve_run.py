@@ -12,7 +12,13 @@ from vibro_sweep.analysis.continuation.events import Event
 from vibro_sweep.analysis.continuation.recorded import Rows, join, rows_of
 from vibro_sweep.analysis.continuation.secant import root
 from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve, copy
-from vibro_sweep.analysis.curves.curve_events import beside, found_between, found_to_edge, without_echoes
+from vibro_sweep.analysis.curves.curve_events import (
+    ENDS_OF_CONTACTS,
+    beside,
+    found_between,
+    found_to_edge,
+    without_echoes,
+)
 from vibro_sweep.analysis.curves.ends import End, birth, birth_near, in_full, just_before, strong_resonance
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit, orbit_of
 from vibro_sweep.engine.continuation import stepper
@@ -161,6 +167,8 @@ class CurveRun:
             if self._holds(one.event, one.place, *beside(w, a, b, one, found)):
                 self.special.append(self._at(one.event.type, one.place, one.error, one.event))
                 if ends and (one.event.impact is not None or one.event.touches):
+                    return False
+                if one.event.type in ENDS_OF_CONTACTS:
                     return False
         if ends:  # at a place that could not be located
             self.special.append(self._at("failed", a, np.nan))

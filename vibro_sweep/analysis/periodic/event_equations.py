@@ -32,7 +32,7 @@ class EventEquations:
         self.q, self.K, self.n = q, len(sides), 2 * len(q.normal)
         planes, self.closing = _tables(q, sigma, half_periods, bool(rests), q.compliant)
         self.planes = planes.copy()  # kernels write the contact's numbers into it
-        self.planes[0]["numbers"] = _contact_of(q)
+        self.planes[0]["numbers"], self.planes[0]["by_force"] = _contact_of(q), q.by_force
         self.planes[0]["exact"][self.n * (self.n + 2) :] = numbers_of(q, Units(1.0, q.omega))
         resting, compliant = np.isin(np.arange(self.K), rests), which_press(q)
         self.problem = Problem(
@@ -64,6 +64,13 @@ class EventEquations:
         """A task of engine/continuation/stepper.py."""
         row = np.zeros(2 * self.K + 3)
         return stepper.at(task, self.planes, self.problem, self._path, self.place, row, self.workspace)
+
+    def multipliers(self) -> np.ndarray:
+        """(n,) of the equations that were assembled last, by falling modulus."""
+        last, n = self.workspace.work[0]["last"], self.n
+        ahead, behind = last[:, :n], last[:, 2 * n + 2 : 3 * n + 2]
+        values = np.linalg.eigvals(-self.problem.sigma * np.linalg.solve(ahead, behind)).astype(complex)
+        return values[np.lexsort((-values.imag, -np.abs(values)))]
 
     def newton(self, starts, oscillators=()) -> tuple[np.ndarray, np.ndarray]:
         """Newton's method from guesses (m, 2K) of times and jumps, without rests: solutions, and the last change, NaN:

@@ -21,7 +21,7 @@ from vibro_sweep.engine.impulses.flow import flow
 from vibro_sweep.engine.impulses.free_modes import ResonanceError, TooStiffError
 from vibro_sweep.model.arguments import checked_count, checked_state
 from vibro_sweep.model.errors import ArgumentError
-from vibro_sweep.model.linear import Family, followable_family_of, forcing_period
+from vibro_sweep.model.linear import Family, family_of, forcing_period
 from vibro_sweep.model.real import array_of
 from vibro_sweep.model.refusals import not_allowed
 
@@ -55,7 +55,7 @@ def periodic_orbit(system, state=None, periods: int = 1, itinerary: str | None =
     >>> orbit.status, orbit.period, orbit.stable, round(float(abs(orbit.multipliers[0])), 6)
     ('ok', 1, True, 0.903327)
     """
-    family = followable_family_of(system)
+    family = family_of(system)
     periods = checked_count("periods", periods, 1, MOST_PERIODS)
     sides = None if itinerary is None else _checked_sides(family.linear, itinerary)
     rows = None if guess is None else _checked_guess(family.linear, guess, itinerary)

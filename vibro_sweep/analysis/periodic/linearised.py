@@ -9,7 +9,7 @@ import numpy as np
 from vibro_sweep.analysis.periodic.contact_numbers import Units, number_slopes
 from vibro_sweep.analysis.periodic.event_equations import EventEquations
 from vibro_sweep.engine.continuation import stepper
-from vibro_sweep.engine.continuation.problem import FLIP, FOLD
+from vibro_sweep.engine.continuation.problem import FLIP, FOLD, GRAZE
 from vibro_sweep.engine.continuation.workspace import THETA
 from vibro_sweep.engine.impulses.flow import rate_slopes
 from vibro_sweep.model.linear import Linear
@@ -20,13 +20,17 @@ class Linearised:
 
     slope : how its oscillator changes with a number
     watched : indices of impacts without speed, which are followed as turning points and take part in nothing
+    corner : that of them which begins as a contact does that ends by force, if any
     """
 
-    def __init__(self, solution, slope: Linear | None = None, watched=()):
+    def __init__(self, solution, slope: Linear | None = None, watched=(), corner: int | None = None):
         e = self.equations = EventEquations.of(solution)
         self.solution, self.slope, self.q = solution, slope, e.q
         e.problem = e.problem._replace(parameters=int(slope is not None))
-        e.problem.sides[list(watched)], e.problem.rests[list(watched)] = 0.0, False
+        bare = [i for i in watched if i != corner]
+        e.problem.sides[bare], e.problem.rests[bare] = 0.0, False
+        if corner is not None:
+            e.problem = e.problem._replace(kind=GRAZE, index=corner)
         self._take_oscillator()
         e.take_solution(solution)
         e.place.jumps[list(watched)] = 0.0

@@ -314,7 +314,8 @@ def orbit_of(system, solution: Solution | None) -> PeriodicOrbit:
         return PeriodicOrbit(system, "not_converged")
     if solution.K == 0 and not is_isolated(solution):
         return PeriodicOrbit(system, "resonance")
-    return PeriodicOrbit(system, "ok" if solution.real else "inadmissible", solution)
+    status = "ok" if solution.real else "inadmissible" if solution.relaxes else "unrelaxed"
+    return PeriodicOrbit(system, status, solution)
 
 
 def leans(solution: Solution) -> bool:

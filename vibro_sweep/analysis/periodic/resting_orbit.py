@@ -9,6 +9,7 @@ import numpy as np
 
 from vibro_sweep.analysis.periodic.event_equations import EventEquations
 from vibro_sweep.engine.continuation import stepper
+from vibro_sweep.engine.continuation.workspace import TEST
 
 MOST_STEPS = 30
 ROUNDED = 8 * np.finfo(float).eps  # of phases
@@ -103,21 +104,18 @@ class RestingOrbit:
         """(K, 2N + 3) before the impacts."""
         return self._whole(self.place.x[:, : self.n], self.place.phases)
 
-    def certificate(self) -> tuple[np.ndarray, float]:
-        """(distance, t, side) of the turning point nearest to its stop, inf where there is none; and the least free
-        acceleration into the stop, where a rest begins, or where it turns within."""
+    def certificate(self) -> tuple[np.ndarray, float, float]:
+        """(distance, t, side) of the turning point nearest to its stop, inf where there is none; the least free
+        acceleration into the stop, where a rest begins, or where it turns within; and `time_to_spare` of its stops."""
         self.equations.run_task(stepper.EXAMINE)
         distance, phase, side = self.equations.workspace.work[0]["nearest"]
         time = (phase - self.q.tau) / self.q.omega if distance < np.inf else 0.0
         hold = (self.events["hold"] * np.where(self.pressed, 1.0, self.q.omega**2))[self.rests].min()
-        return np.array([distance, time, side]), float(hold)
+        return np.array([distance, time, side]), float(hold), float(self.place.tests[TEST.relaxed])
 
     def multipliers(self) -> np.ndarray:
         """(2N,) of the map over P, with the mirror for sigma = -1."""
-        last, n = self.equations.workspace.work[0]["last"], self.n
-        ahead, behind = last[:, :n], last[:, 2 * n + 2 : 3 * n + 2]
-        values = np.linalg.eigvals(-self.sigma * np.linalg.solve(ahead, behind)).astype(complex)
-        values = values[np.lexsort((-values.imag, -np.abs(values)))]
+        values = self.equations.multipliers()
         if not np.all(self.pressed[self.rests]):
             values[-2:] = 0.0
         return values
@@ -127,8 +125,9 @@ class RestingOrbit:
         side; 0 of flights."""
         N, rests, ends = self.n // 2, self.equations.problem.rests, self._ends
         struck, after = self.states, self._whole(self.events["after"][:, : self.n], ends)
+        on, stops = self.equations.problem.sides, self.q.stop(self.equations.problem.sides)
+        struck[rests, 0], after[rests, 0] = stops[rests], (stops + on * self.events["depth"])[rests]
         for states in (struck, after):
-            states[rests, 0] = self.q.stop(self.equations.problem.sides)[rests]
             states[rests & ~self.pressed, N] = 0.0
         order = np.sort(np.append(np.flatnonzero(rests), np.arange(len(rests)) + 0.5))  # a rest, then its flight
         which, held = np.floor(order).astype(int), order == np.floor(order)

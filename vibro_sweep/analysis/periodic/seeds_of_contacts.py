@@ -1,8 +1,8 @@
 """Guesses of orbits with contacts, from those of the same machine with rigid stops.
 
 A contact of a free mass with the frequency sqrt(K) and the damping ratio z on its stop takes half a period, and its
-restitution is exp(-pi z/sqrt(1 - z^2)). Where the stop is so soft that this leads nowhere, it is made softer from
-orbit to orbit.
+restitution is exp(-pi z/sqrt(1 - z^2)); with a release by force pi is less by 2 arcsin z. Where the stop is so soft
+that this leads nowhere, it is made softer from orbit to orbit.
 """
 
 import math
@@ -26,8 +26,8 @@ def of_free_mass(q: Linear, side: int) -> tuple[float, float]:
     k, c = (q.k_high, q.c_high) if side > 0 else (q.k_low, q.c_low)
     rate = math.sqrt(k * push)
     z = min(c * push / (2 * rate), MOST_DAMPED)
-    root = math.sqrt(1 - z * z)
-    return math.exp(-math.pi * z / root), math.pi / (rate * root)
+    root, turned = math.sqrt(1 - z * z), math.pi - (2 * math.asin(z) if q.by_force else 0.0)
+    return math.exp(-turned * z / root), turned / (rate * root)
 
 
 def rigid(family: Family) -> Family:

@@ -78,6 +78,11 @@ class Solution:
         return self._flights[2] if self.rests else np.inf
 
     @cached_property
+    def relaxes(self) -> bool:
+        """Whether each stop that a contact left by force is at rest again at its next touch."""
+        return not self.rests or self._flights[3] > 0
+
+    @cached_property
     def motion(self) -> np.ndarray:
         """(K, 3) gap velocity, acceleration and jerk before each impact; the velocity as the jump says."""
         q = self.family.linear
@@ -145,7 +150,7 @@ class Solution:
         q = self.family.linear
         sticks = self.hold > -q.omega * speed and np.all(self.ends >= self.times[list(self.rests)])
         sticks = sticks and np.all(one_plus_R(q, np.array(self.sides)[list(self.rests)]) == 1)
-        return bool(np.all(self.pushes > -speed) and self.stop_distance > -rounding and sticks)
+        return bool(np.all(self.pushes > -speed) and self.stop_distance > -rounding and sticks and self.relaxes)
 
     @cached_property
     def size_of_gap(self) -> float:

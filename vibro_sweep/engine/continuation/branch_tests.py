@@ -125,8 +125,9 @@ def happens_on_branch(c, a, b):
     """Whether a test changes its sign between two points, multipliers cross the unit circle, or b is out of the stops;
     or whether something may do so twice."""
     x, y, D = a.tests, b.tests, a.x.shape[1] - 1
-    if x[TEST.release] > 0.0 >= y[TEST.release] or x[TEST.hold] > 0.0 >= y[TEST.hold]:
-        return True
+    for i in (TEST.release, TEST.hold, TEST.relaxed):
+        if x[i] > 0.0 >= y[i]:
+            return True
     for i in range(len(a.x)):
         side = 1.0 if c.rests[i] else -c.sides[i]
         here, there = side * a.x[i, D], side * b.x[i, D]

@@ -6,9 +6,11 @@ import numpy as np
 
 from vibro_sweep.engine.continuation.chatter_sum import NEXT
 from vibro_sweep.engine.continuation.flight_tables import polynomial
-from vibro_sweep.engine.continuation.lasting import hold_of, is_contact
+from vibro_sweep.engine.continuation.lasting import forced, hold_of, is_contact
 from vibro_sweep.engine.continuation.moving_flow import HIGH, LOW, OMEGA, ONE_PLUS_R_HIGH, ONE_PLUS_R_LOW
 from vibro_sweep.engine.continuation.problem import GRAZE, STICK
+from vibro_sweep.engine.continuation.relaxation import time_to_spare
+from vibro_sweep.engine.continuation.workspace import TEST
 from vibro_sweep.engine.impulses.extremes import OVERLAP, extremes_of_cell, turns_near
 from vibro_sweep.engine.impulses.taylor_orders import ORDER
 from vibro_sweep.engine.simd.jit import jit
@@ -30,6 +32,10 @@ def certify(f, c, place, b):
         far = np.inf
     work.nearest[0] = far
     look(f, c, place, b)
+    if c.compliant is not None:
+        place.tests[TEST.relaxed], place.tests[TEST.forced] = time_to_spare(f, c, place, b), forced(b)
+    else:
+        place.tests[TEST.relaxed], place.tests[TEST.forced] = np.inf, 0.0
     if work.nearest[0] == far and far < np.inf:
         work.nearest[0] = np.inf
         look(f, c, place, b)

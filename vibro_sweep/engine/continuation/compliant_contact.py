@@ -5,11 +5,17 @@ and k, c, p the stop's stiffness, damping and preload over m_e, the force acts o
 
     dz/dphi = (A (z, 1) + Re(F e^{i phi}) - e_v (k d + c v + side p))/omega        y+ = z(phi + s) - S(phi + s)
 
-so that no steady motion of the contact is needed. Row 2 of the event is d(phi + s)/s = 0, which is v = 0 at a graze,
-s = 0: nothing is singular there. d is 0 at both ends, exactly. E_c is the derivative of z(phi + s) by z. At fixed
-phases, with J = (c v + side p)/omega of the touch, and J+ of the release,
+so that no steady motion of the contact is needed. Row 2 of the event is
 
-    xi+ = E_c (xi - e_g v/omega dphi + e_v J dphi) - e_v J+ (dphi + ds) + ..       gap left out of xi, and of xi+
+    d(phi + s)/s = 0                          released at the stop, d = 0 exactly
+    (k d + c v + side p)(phi + s) = 0         released by force, where that comes first: the gap goes on from d
+
+which both are v = 0 at a graze without preload, s = 0: nothing is singular there. E_c is the derivative of z(phi + s)
+by z. At fixed phases, with J = (k d + c v + side p)/omega of the touch, where d = 0, and J+ of the release,
+
+    xi+ = E_c (xi - e_g v/omega dphi + e_v J dphi) - e_v J+ (dphi + ds) + ..       gap left out of xi
+
+The stop that is left by force relaxes alone: relaxation.py.
 
 The contact is computed in equal parts, by one linear map (contact_map.py).
 """
@@ -18,7 +24,18 @@ import cmath
 
 import numpy as np
 
-from vibro_sweep.engine.continuation.contact_map import MEAN, SUM, apply, copy_motion, parts_of, put_course, put_tables
+from vibro_sweep.engine.continuation.contact_map import (
+    MEAN,
+    SUM,
+    apply,
+    copy_motion,
+    ends_by_force,
+    force_scale,
+    of_motion,
+    parts_of,
+    put_course,
+    put_tables,
+)
 from vibro_sweep.engine.continuation.moving_flow import HIGH, LOW, OMEGA, law_at
 from vibro_sweep.engine.impulses.extremes import OVERLAP, extremes_of_cell
 from vibro_sweep.engine.impulses.taylor_orders import ORDER
@@ -29,33 +46,66 @@ from vibro_sweep.engine.simd.memory import eight, put_eight
 
 @jit
 def contact(f, side, x, e, work):
-    """`after`, `carry`, `pull` and `release` of a contact, after `approach`."""
+    """`after`, `carry`, `pull`, `release` and `depth` of a contact, after `approach`."""
     n, N, omega, s = f.A.shape[0], f.A.shape[0] // 2, f.numbers[OMEGA], x[f.A.shape[0] + 1]
     stop, law, v = HIGH if side > 0 else LOW, law_at(f, side), e.motion[0]
     by_length = press_gap(f, side, x, s, e, work)
-    state, mean, turn = work.resting[0], work.resting[3], e.turn * cmath.exp(1j * s)
-    c, p = f.values[law + 1], side * f.values[law + 2]
-    touched, released = (c * v + p) / omega, (c * state[N, n] + p) / omega
+    state, turn, by_force = work.resting[0], e.turn * cmath.exp(1j * s), ends_by_force(f, side, work.resting[0, N, n])
+    k, c, p = f.values[law], f.values[law + 1], side * f.values[law + 2]
+    touched = (c * v + p) / omega
+    if by_force:
+        put_force(f, side, touched, turn, e, work)
+    else:
+        put_place(f, touched, by_length, e, work)
+    released = (k * state[0, n] + c * state[N, n] + p) / omega
+    e.depth = side * state[0, n]
     for r in range(n):
         e.after[r] = state[r, n] - (f.Z[r] * turn).real
-        for k in range(n):
-            e.carry[r, k] = state[r, k]
+        for i in range(n):
+            e.carry[r, i] = state[r, i]
         e.carry[r, 0] = 0.0
         e.carry[r, n + 1] = -released if r == N else 0.0
         e.carry[r, n] = state[r, N] * touched - state[r, 0] * v / omega + e.carry[r, n + 1]
         for j in range(f.parameters):
             e.carry[r, n + 2 + j] = state[r, n + 1 + j] - (f.Z_slopes[j, r] * turn).real
-    e.after[0] = f.numbers[stop] - (f.Z[0] * turn).real
+    e.after[0] += f.numbers[stop]
     e.after[n] = 1.0
-    for k in range(n):
-        e.carry[0, k], e.release[k] = 0.0, mean[0, k]
-    e.carry[0, n] = e.carry[0, n + 1] = -state[N, n] / omega
+    for j in range(f.parameters):
+        e.carry[0, n + 2 + j] += f.number_slopes[j, stop]
+    if not by_force:
+        e.carry[0, n] = e.carry[0, n + 1] = -state[N, n] / omega
+
+
+@jit
+def put_place(f, touched, by_length, e, work):
+    """`pull` and `release` where the gap is back at its stop, exactly: row 2 is its mean rate."""
+    n, N, omega, state, mean = f.A.shape[0], f.A.shape[0] // 2, f.numbers[OMEGA], work.resting[0], work.resting[3]
+    for i in range(n):
+        e.release[i] = mean[0, i]
     e.pull = mean[0, n]
     e.release[0], e.release[n + 1] = 0.0, by_length
-    e.release[n] = (mean[N, n] - mean[0, 0] * v) / omega + mean[0, N] * touched
+    e.release[n] = (mean[N, n] - mean[0, 0] * e.motion[0]) / omega + mean[0, N] * touched
     for j in range(f.parameters):
-        e.carry[0, n + 2 + j] = f.number_slopes[j, stop] - (f.Z_slopes[j, 0] * turn).real
         e.release[n + 2 + j] = mean[0, n + 1 + j]
+    for i in range(n + 1 + f.parameters):
+        state[0, i] = 0.0
+
+
+@jit
+def put_force(f, side, touched, turn, e, work):
+    """`pull` and `release` where the force is 0: row 2 is the force, of the size of a speed."""
+    n, N, omega, state, law = f.A.shape[0], f.A.shape[0] // 2, f.numbers[OMEGA], work.resting[0], law_at(f, side)
+    scale = force_scale(f, side)
+    k, c, depth, speed = f.values[law] / scale, f.values[law + 1] / scale, state[0, n], state[N, n]
+    for i in range(n):
+        e.release[i] = k * state[0, i] + c * state[N, i]
+    e.pull = k * depth + c * speed + side * f.values[law + 2] / scale
+    e.release[n + 1] = (k * speed + c * of_motion(f, work.rates[0, N], state, turn)) / omega
+    e.release[n] = e.release[N] * touched - e.release[0] * e.motion[0] / omega + e.release[n + 1]
+    e.release[0] = 0.0
+    for j in range(f.parameters):
+        by_law = f.slopes[j, law] * depth + f.slopes[j, law + 1] * speed + side * f.slopes[j, law + 2]
+        e.release[n + 2 + j] = k * state[0, n + 1 + j] + c * state[N, n + 1 + j] + by_law / scale
 
 
 @jit
@@ -110,9 +160,10 @@ def press_on(f, side, length, turn, work):
 
 @jit
 def least_depth(f, side, x, e, work):
-    """The least depth at which the gap turns back into the stop during a contact; inf where it does not."""
+    """The least depth at which the gap turns back into the stop during a contact, inf where it does not; with a release
+    by force also the least force, as of row 2, where that rises again."""
     parts, nearest, state, other = parts_of(f, side, x[-1]), work.turning, work.resting[0], work.resting[1]
-    step = x[-1] / parts
+    step, cell = x[-1] / parts, work.cell
     begin_contact(f, x, e, state)
     put_tables(f, side, step, work)
     nearest[0] = np.inf
@@ -120,9 +171,24 @@ def least_depth(f, side, x, e, work):
         swing = e.turn * cmath.exp(1j * step * k)
         put_course(f, state, swing, work)
         for order in range(ORDER + 1):
-            work.cell[order] *= side
+            cell[order] *= side
         if step > 0.0:
-            extremes_of_cell(work.cell, step * OVERLAP if k + 1 < parts else step, 0.0, np.inf, nearest, work.waiting)
+            length = step * OVERLAP if k + 1 < parts else step
+            extremes_of_cell(cell, length, 0.0, np.inf, nearest, work.waiting)
+            if f.by_force > 0:
+                put_force_course(f, side, cell)
+                extremes_of_cell(cell, length, 0.0, np.inf, nearest, work.waiting)
         apply(f, work.pressing[SUM], swing, state, other)
         copy_motion(other, state)
     return nearest[0]
+
+
+@jit
+def put_force_course(f, side, cell):
+    """The Taylor coefficients of the force, as of row 2, from those of the depth."""
+    law, scale = law_at(f, side), force_scale(f, side)
+    k, c = f.values[law] / scale, f.values[law + 1] * f.numbers[OMEGA] / scale
+    for order in range(ORDER):
+        cell[order] = k * cell[order] + c * (order + 1) * cell[order + 1]
+    cell[ORDER] *= k
+    cell[0] += f.values[law + 2] / scale

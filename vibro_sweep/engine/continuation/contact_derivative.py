@@ -5,15 +5,16 @@ the difference of two such motions, and so is what q changes by with the paramet
 
     z_v = q + z' s_v        D_v z_u = z'_b s_v + z_v' (dphi + ds) - E_c q'(0) dphi + E_c D_v a_u + (q_p + z'_p s_v) dp
 
-at the release, where z'_b and z'_p are the rates of change of E_c b and z_p. Row 2 is their mean rate over the contact.
+at the release, where z'_b and z'_p are the rates of change of E_c b and z_p. Row 2 is their mean rate over the contact,
+or its force, which is linear in them.
 """
 
 import cmath
 import math
 
 from vibro_sweep.engine.continuation.compliant_contact import begin_contact, press_on
-from vibro_sweep.engine.continuation.contact_map import apply, copy_motion, put_rates
-from vibro_sweep.engine.continuation.moving_flow import OMEGA
+from vibro_sweep.engine.continuation.contact_map import apply, copy_motion, ends_by_force, force_scale, put_rates
+from vibro_sweep.engine.continuation.moving_flow import OMEGA, law_at
 from vibro_sweep.engine.simd.jit import jit
 
 LEAST = 1e-5  # length in phase of a contact: of a shorter one the gradient at this length, as rates are divided by it
@@ -36,6 +37,7 @@ def differentiate_contact(f, side, x, e, through, work):
     copy_motion(room[0], kept[END])
     copy_motion(room[3], kept[MEAN])
     put_motion_rate(f, work.rates, end, room[0], kept[END_RATE])
+    by_force = ends_by_force(f, side, kept[END, n // 2, n])
     for k in range(2):
         phase, longer = part_of(e.v[n], k), part_of(e.v[n + 1], k)
         begin_contact(f, x, e, room[0])
@@ -47,8 +49,11 @@ def differentiate_contact(f, side, x, e, through, work):
             room[0, r, n] += longer * kept[END_RATE, r, n]
         put_motion_rate(f, work.rates, end * (1.0 + 1j * (phase + longer)), room[0], kept[END_VARIED])
         unit = 1.0 + 0j if k == 0 else 1j
-        add_map(f, e, end, phase, longer, unit, through, work)
-        add_second_row(f, e, length, by_length, phase, longer, unit * e.w[1], work)
+        add_map(f, e, end, by_force, phase, longer, unit, through, work)
+        if by_force:
+            add_force(f, side, e, phase, longer, unit * e.w[1], work)
+        else:
+            add_place(f, e, length, by_length, phase, longer, unit * e.w[1], work)
 
 
 @jit
@@ -76,35 +81,63 @@ def jump_of_rate(f, e, r):
 
 
 @jit
-def add_map(f, e, end, phase, longer, unit, through, work):
-    """Add the terms of the state after the contact."""
-    n, kept, state = f.A.shape[0], work.varied, work.resting[0]
-    later = phase + longer
-    for r in range(n):
-        weight, swing = unit * through[r], f.Z[r] * end
-        held = 1.0 if r != 0 else 0.0  # the gap is that of the stop
-        turned = held * (kept[END_VARIED, r, n] - kept[END_RATE, r, n]) + swing.real * later
-        e.slopes[n + 1] += weight * turned
-        by_phase = turned
-        for k in range(n):
-            away = jump_of_rate(f, e, k) - kept[START, k, n]
-            if k != 0:
-                e.slopes[k] += weight * held * longer * kept[END_RATE, r, k]
-            at_start = kept[START_VARIED, k, n] - kept[START, k, n]
-            at_start += phase * (f.Z[k] * e.turn).real if k != 0 else 0.0
-            by_phase += held * (longer * kept[END_RATE, r, k] * away - kept[END, r, k] * at_start)
-        e.slopes[n] += weight * by_phase
-        for j in range(f.parameters):
-            column = n + 1 + j
-            moved = longer * kept[END_RATE, r, column] + state[r, column] - kept[END, r, column]
-            for k in range(1, n):
-                moved += kept[END, r, k] * (1j * f.Z_slopes[j, k] * e.turn).real * phase
-            work.slopes_p[j] += weight * (held * moved - (1j * f.Z_slopes[j, r] * end).real * later)
+def moved_start(f, e, k, phase, work):
+    """What the rate of coordinate k at the touch changes by along v, beside that of a motion at the same phase."""
+    kept = work.varied
+    own = phase * (f.Z[k] * e.turn).real if k != 0 else 0.0
+    return kept[START_VARIED, k, f.A.shape[0]] - kept[START, k, f.A.shape[0]] + own
 
 
 @jit
-def add_second_row(f, e, length, by_length, phase, longer, weight, work):
-    """Add the terms of row 2, d(release)/length."""
+def add_map(f, e, end, by_force, phase, longer, unit, through, work):
+    """Add the terms of the state after the contact."""
+    n, later = f.A.shape[0], phase + longer
+    for r in range(n):
+        weight = unit * through[r]
+        if r != 0 or by_force:  # else the gap is that of the stop
+            add_motion(f, e, r, phase, longer, weight, work)
+        for i in range(2):
+            e.slopes[n + i] += weight * later * (f.Z[r] * end).real
+        for j in range(f.parameters):
+            work.slopes_p[j] -= weight * later * (1j * f.Z_slopes[j, r] * end).real
+
+
+@jit
+def add_motion(f, e, r, phase, longer, weight, work):
+    """Add the terms of coordinate r of the whole motion at the release."""
+    n, kept, state = f.A.shape[0], work.varied, work.resting[0]
+    turned = kept[END_VARIED, r, n] - kept[END_RATE, r, n]
+    by_phase = turned
+    for k in range(n):
+        if k != 0:
+            e.slopes[k] += weight * longer * kept[END_RATE, r, k]
+        by_phase += longer * kept[END_RATE, r, k] * (jump_of_rate(f, e, k) - kept[START, k, n])
+        by_phase -= kept[END, r, k] * moved_start(f, e, k, phase, work)
+    e.slopes[n] += weight * by_phase
+    e.slopes[n + 1] += weight * turned
+    for j in range(f.parameters):
+        column = n + 1 + j
+        moved = longer * kept[END_RATE, r, column] + state[r, column] - kept[END, r, column]
+        for k in range(1, n):
+            moved += kept[END, r, k] * (1j * f.Z_slopes[j, k] * e.turn).real * phase
+        work.slopes_p[j] += weight * moved
+
+
+@jit
+def add_force(f, side, e, phase, longer, weight, work):
+    """Add the terms of row 2 of a release by force."""
+    n, N, law, kept, state = f.A.shape[0], f.A.shape[0] // 2, law_at(f, side), work.varied, work.resting[0]
+    weight /= force_scale(f, side)
+    for i in range(2):  # k d, c v
+        r = i * N
+        add_motion(f, e, r, phase, longer, weight * f.values[law + i], work)
+        for j in range(f.parameters):
+            work.slopes_p[j] += weight * f.slopes[j, law + i] * (state[r, n] - kept[END, r, n])
+
+
+@jit
+def add_place(f, e, length, by_length, phase, longer, weight, work):
+    """Add the terms of row 2 of a release at the stop, d(release)/length."""
     n, N, omega = f.A.shape[0], f.A.shape[0] // 2, f.numbers[OMEGA]
     kept, state, mean = work.varied, work.resting[0], work.resting[3]
     change = mean[0, n] - kept[MEAN, 0, n] + longer * by_length  # of the mean rate along v
@@ -116,9 +149,8 @@ def add_second_row(f, e, length, by_length, phase, longer, weight, work):
         pace = (kept[END, N, k] / omega - kept[MEAN, 0, k]) / length
         if k != 0:
             e.slopes[k] += weight * longer * pace
-        at_start = kept[START_VARIED, k, n] - kept[START, k, n]
-        at_start += phase * (f.Z[k] * e.turn).real if k != 0 else 0.0
-        by_phase += longer * pace * (jump_of_rate(f, e, k) - kept[START, k, n]) - kept[MEAN, 0, k] * at_start
+        by_phase += longer * pace * (jump_of_rate(f, e, k) - kept[START, k, n])
+        by_phase -= kept[MEAN, 0, k] * moved_start(f, e, k, phase, work)
     e.slopes[n] += weight * by_phase
     for j in range(f.parameters):
         column, d_omega = n + 1 + j, f.number_slopes[j, OMEGA]

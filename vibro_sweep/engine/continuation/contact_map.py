@@ -24,6 +24,21 @@ def parts_of(f, side, length):
 
 
 @jit
+def ends_by_force(f, side, speed):
+    """Whether a contact that ends with this gap velocity ends where the force is 0, before the gap is at its stop."""
+    law = law_at(f, side)
+    c, p = f.values[law + 1], f.values[law + 2]
+    return f.by_force > 0 and ((p == 0.0 and c != 0.0) or side * c * speed + p < 0.0)
+
+
+@jit
+def force_scale(f, side):
+    """What the force of a contact is divided by, so that it is of the size of a speed."""
+    law = law_at(f, side)
+    return math.sqrt(f.values[law]) + f.values[law + 1]
+
+
+@jit
 def copy_motion(source, target):
     for place in range(0, len(source) * source.shape[1], LANES):
         put_eight(target, place, eight(source, place))
@@ -158,10 +173,15 @@ def put_polynomials(n, series, step, mean, total):
 @jit
 def put_course(f, motion, swing, work):
     """work.cell: Taylor coefficients of d over the next step."""
-    n = f.A.shape[0]
     for order in range(ORDER + 1):
-        row = work.courses[order]
-        total = row[n] * swing.real + row[n + 1] * swing.imag + row[n + 2]
-        for i in range(n):
-            total += row[i] * motion[i, n]
-        work.cell[order] = total
+        work.cell[order] = of_motion(f, work.courses[order], motion, swing)
+
+
+@jit
+def of_motion(f, row, motion, swing):
+    """A row of a map of (z, cos, sin, 1) times the motion."""
+    n = f.A.shape[0]
+    total = row[n] * swing.real + row[n + 1] * swing.imag + row[n + 2]
+    for i in range(n):
+        total += row[i] * motion[i, n]
+    return total

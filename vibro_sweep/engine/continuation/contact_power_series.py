@@ -7,7 +7,8 @@ length of the orbit's contact, then over the change ds of the length, exp(B ds) 
 import cmath
 
 from vibro_sweep.engine.continuation.compliant_contact import press_gap, press_on
-from vibro_sweep.engine.continuation.moving_flow import HIGH, LOW, OMEGA
+from vibro_sweep.engine.continuation.contact_map import ends_by_force, force_scale
+from vibro_sweep.engine.continuation.moving_flow import HIGH, LOW, OMEGA, law_at
 from vibro_sweep.engine.continuation.power_series import put_wave, steady, times
 from vibro_sweep.engine.continuation.workspace import TERMS
 from vibro_sweep.engine.simd.jit import jit
@@ -16,7 +17,7 @@ from vibro_sweep.engine.simd.jit import jit
 @jit
 def press_series(f, side, x, e, y, work):
     """y (n, TERMS) becomes the state after a contact, and `e.left` its rows, from `e.series` of dphi and ds."""
-    n, s, jets, motion = f.A.shape[0], x[f.A.shape[0] + 1], work.jets, work.states[1]
+    n, N, s, jets, motion = f.A.shape[0], f.A.shape[0] // 2, x[f.A.shape[0] + 1], work.jets, work.states[1]
     put_whole_map(f, side, s, x, e, work)
     put_wave(e.turn, e.series[0], jets)
     for m in range(TERMS):
@@ -35,10 +36,16 @@ def press_series(f, side, x, e, y, work):
     for m in range(TERMS):
         longer[m] = e.series[0, m] + e.series[1, m]
     put_wave(turn, longer, jets)
+    by_force, law, scale = ends_by_force(f, side, motion[N, 0].real), law_at(f, side), force_scale(f, side)
     for m in range(TERMS):
-        e.left[1, m], motion[0, m] = motion[0, m] / s, 0.0
+        if by_force:
+            e.left[1, m] = (f.values[law] * motion[0, m] + f.values[law + 1] * motion[N, m]) / scale
+        else:
+            e.left[1, m], motion[0, m] = motion[0, m] / s, 0.0
         for r in range(n):
             y[r, m] = motion[r, m] - steady(f.Z[r], jets, m)
+    if by_force:
+        e.left[1, 0] += side * f.values[law + 2] / scale
     y[0, 0] += f.numbers[HIGH if side > 0 else LOW]
 
 

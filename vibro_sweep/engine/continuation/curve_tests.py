@@ -8,7 +8,7 @@ from vibro_sweep.engine.continuation.certificate import certify
 from vibro_sweep.engine.continuation.chatter_sum import REACH
 from vibro_sweep.engine.continuation.conditions import keep_null_vectors
 from vibro_sweep.engine.continuation.factors import factorise, solve_rows
-from vibro_sweep.engine.continuation.lasting import factor_of_grazes, has_rests, is_watched
+from vibro_sweep.engine.continuation.lasting import corner_of, factor_of_grazes, has_rests, is_watched
 from vibro_sweep.engine.continuation.moving_flow import OMEGA
 from vibro_sweep.engine.continuation.normal_form import coefficient
 from vibro_sweep.engine.continuation.problem import FLIP, FOLD, GRAZE, STICK, TORUS, is_critical
@@ -86,6 +86,10 @@ def examine_curve(f, c, place, b):
     for r in range(n):
         place.multipliers[r, 0] = place.multipliers[r, 1] = np.nan
     tests[TEST.stop_distance] = certify(f, c, place, b)
+    tests[TEST.hold] = np.inf
+    for i in range(len(b.events)):
+        if c.rests[i]:
+            tests[TEST.hold] = min(tests[TEST.hold], b.events[i].hold)
     if c.kind == STICK:
         K, reach = len(place.x), b.tail[0].numbers[REACH] * f.numbers[OMEGA]
         end = place.x[0, n] + math.pi * f.half_turns
@@ -94,7 +98,8 @@ def examine_curve(f, c, place, b):
     if is_critical(c):
         examine_null_vectors(c, place, b, n)
     grazes = factor_of_grazes(f, c, place)
-    watched = is_watched(f, c, c.index)  # then this is the orbit without the contact
+    # where nothing jumps at the graze this is the orbit without the contact
+    watched = is_watched(f, c, c.index) and corner_of(f, c, c.index) == 0.0
     if c.kind != FOLD and not watched:
         tests[TEST.plus] = determinant(c, b, n, 1.0) / grazes
     if c.kind != FLIP and not watched:
@@ -165,7 +170,7 @@ def happens_on_curve(c, a, b):
     """Whether a test changes its sign between two points, or a pair comes near to 1 or -1."""
     if (c.repeats and is_born(c, 1.0, a, b)) or (c.mirrors and is_born(c, -1.0, a, b)):
         return True
-    for i in CURVE_TESTS:
+    for i in (*CURVE_TESTS, TEST.hold, TEST.relaxed):
         if changes_sign(a.tests[i], b.tests[i]):
             return True
     D = a.x.shape[1] - 1

@@ -40,6 +40,23 @@ def is_watched(f, c, i):
 
 
 @jit
+def corner_of(f, c, i):
+    """The jump of the velocity of event i by its depth, where it is watched: the least contact that ends by force."""
+    return f.values[law_at(f, c.sides[i]) + 1] if f.by_force > 0 and is_watched(f, c, i) else 0.0
+
+
+@jit
+def forced(b):
+    """How many contacts end by their force, before the gap is at its stop. Where this changes the lengths of contacts
+    have a corner, and the motion is smooth."""
+    count = 0.0
+    for i in range(len(b.events)):
+        if b.events[i].depth != 0.0:
+            count += 1.0
+    return count
+
+
+@jit
 def factor_of_grazes(f, c, place):
     """The product of the lengths at which a branch turns (`turns_at_graze`); 1.0 where there is none."""
     result = 1.0

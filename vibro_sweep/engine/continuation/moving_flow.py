@@ -47,6 +47,7 @@ def plane_of(masses: int, compliant: bool = False) -> np.dtype:
         ("width", float),  # of a cell
         ("bits", np.int64),  # of the number of cells of the longest flight
         ("half_turns", float),  # of the force in a period
+        ("by_force", np.int64),  # 1 where contacts with damped stops end when the force is 0
         ("has_unseen", np.int64),  # 1 where there are free modes that the contact does not see
         ("unseen", float, (n, n)),  # of these the momenta times the places, which the closure keeps by this
         ("fit", float, (DEGREE + 1, DEGREE + 1, count)),  # coefficients of the powers of (p - centre)/reach

@@ -23,7 +23,7 @@ import math
 from vibro_sweep.engine.continuation.chatter_tail import end_of_chatter, put_tail
 from vibro_sweep.engine.continuation.constrained_gap import put_rest
 from vibro_sweep.engine.continuation.flight_tables import flight
-from vibro_sweep.engine.continuation.lasting import is_watched, last
+from vibro_sweep.engine.continuation.lasting import corner_of, is_watched, last
 from vibro_sweep.engine.continuation.moving_flow import HIGH, LOW, OMEGA, ONE_PLUS_R_HIGH, ONE_PLUS_R_LOW
 from vibro_sweep.engine.continuation.problem import STICK, width_of
 from vibro_sweep.engine.continuation.reflections import copy_row, reflect
@@ -50,8 +50,8 @@ def approach(f, x, e):
 
 
 @jit
-def put_rows(f, law, side, x, e, panel):
-    """Rows n and n + 1 of the panel: those of the event itself."""
+def put_rows(f, law, side, corner, x, e, panel):
+    """Rows n and n + 1 of the panel: those of the event itself. corner: as of `corner_of`, else 0.0."""
     n, N, omega = f.A.shape[0], f.A.shape[0] // 2, f.numbers[OMEGA]
     p, F, first, second = 3 * n + 2, 3 * n + 2 + f.parameters, n, n + 1
     stop, one_plus_R = (HIGH, ONE_PLUS_R_HIGH) if side > 0 else (LOW, ONE_PLUS_R_LOW)
@@ -73,6 +73,11 @@ def put_rows(f, law, side, x, e, panel):
         panel[speed, p + j] = weight * (f.Z_slopes[j, N] * e.turn).real
         if law != WATCHED:
             panel[speed, p + j] += f.number_slopes[j, one_plus_R] * v
+    if corner > 0.0:  # D = -c (gap - stop)
+        panel[second, 0], panel[second, n] = corner, corner * v / omega
+        panel[second, F] += corner * (e.gap - f.numbers[stop])
+        for j in range(f.parameters):
+            panel[second, p + j] += corner * ((f.Z_slopes[j, 0] * e.turn).real - f.number_slopes[j, stop])
     if law == END:
         end_of_chatter(f, x, e, panel)
 
@@ -204,7 +209,10 @@ def eliminate(f, c, place, b, watched):
         for r in range(n, 2 * n + 2):
             for j in range(width):
                 panel[r, j] = 0.0
-        put_rows(f, law, c.sides[i], x, e, panel)
+        corner = 0.0
+        if c.compliant is not None and not watched:
+            corner = corner_of(f, c, i)
+        put_rows(f, law, c.sides[i], corner, x, e, panel)
         put_flight(f, law, e, panel)
         if law == REST:
             put_rest(f, e, panel)

@@ -11,6 +11,7 @@ import numpy as np
 
 from vibro_sweep.engine.continuation.corrector import assemble, in_order, move, newton_step, put_plane
 from vibro_sweep.engine.continuation.curve_tests import overflows
+from vibro_sweep.engine.continuation.lasting import forced
 from vibro_sweep.engine.continuation.looking_at import examine, happens, refresh, touches
 from vibro_sweep.engine.continuation.moving_flow import OMEGA, move_exactly, move_to, take_shift
 from vibro_sweep.engine.continuation.path import (
@@ -41,6 +42,7 @@ SHIFTED = 0.8  # of a step, where its end lies on a bifurcation by chance
 MOST_SHIFTS = 5  # of one step
 BEYOND = 1.2  # times the reach of the plane, up to where its polynomials hold
 EARLY = 10  # points before which a curve is not yet taken to be closed
+KINK = 1e-3  # of the longest step: in which a branch may turn where a contact ends in another way
 COARSE = 0.03  # of the longest step: to that they are shortened where they do not distinguish pairs of multipliers
 
 
@@ -126,7 +128,8 @@ def take_steps(f, c, path, place, row, b):
         if made > 0:
             turn = math.acos(min(1.0, max(-1.0, cosine(c, a, place))))
         counts[2] += made
-        if not turn <= path.straight:
+        kinks = made > 0 and length < KINK * path.longest and forced(b) != a.tests[TEST.forced]
+        if not turn <= path.straight and not kinks:
             length *= 0.5
             if length < path.shortest:
                 return FAILED

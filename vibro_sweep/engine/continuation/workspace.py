@@ -34,13 +34,13 @@ ROWS = 3  # most scalar rows: conditions, and the plane across a tangent
 #     reflected, crossing         prod_i (1 + mu_i)/r, r = prod_i (1 + |mu_i|^2)^(1/2), and
 #                                 prod_{i<j} (1 - mu_i mu_j)/r^(n - 1), which poles of multipliers leave finite
 #     hold                        least acceleration into the stop during rests, and speed before them
+#     relaxed, forced             of stops that relax, as of relaxation.py; contacts that end by their force
 ALONG_BRANCHES = tuple(dict.fromkeys(one.test for one in TYPES if one.test))
 ALONG_CURVES = tuple(
     dict.fromkeys(test for one in CODIMENSION_TWO for _, test in one.tests if test not in ("vanishes", "touches"))
 )
-OTHERS = (
-    "stop_distance length residual last before release above below pairs on_circle away reflected crossing hold".split()
-)
+OTHERS = "stop_distance length residual last before release above below pairs on_circle away".split()
+OTHERS += "reflected crossing hold relaxed forced".split()
 NAMES = tuple(dict.fromkeys([*ALONG_CURVES, *ALONG_BRANCHES, *OTHERS]))
 TEST = namedtuple("Test", NAMES)(*range(len(NAMES)))  # the index of each
 BRANCH_TESTS = tuple(NAMES.index(name) for name in ALONG_BRANCHES)
@@ -102,6 +102,7 @@ def event_of(masses: int) -> np.dtype:
         ("release", float, (n + 2 + PARAMETERS,)),  # its derivatives, as of `carry`
         ("course", float, (ORDER + 1,)),  # its Taylor coefficients in the last part of the rest
         ("hold", float),  # the least of it during the rest, into the stop
+        ("depth", float),  # of the gap behind its stop at the end of a contact
         ("gap", float),  # before the event
         ("motion", float, 2),  # and its velocity and acceleration
         ("rows", float, (ROWS, n + 2)),  # entries of the scalar rows, by xi, dphi, dD

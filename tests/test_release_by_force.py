@@ -1,0 +1,159 @@
+"""Periodic orbits, branches, curves and windows with `release: force`: corners, stops that have not relaxed."""
+
+import numpy as np
+import pytest
+from mpmath import mp, mpf
+from reference.compliant_orbits import DIGITS, ContactOrbit
+from support import slow_cases
+from support.compliant_bifurcations import distance_in_digits
+
+import vibro_sweep as vs
+from vibro_sweep.analysis.continuation.first_point import first_place
+from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve
+from vibro_sweep.analysis.curves.curve_start import start_at
+from vibro_sweep.engine.continuation import stepper
+
+
+def one_mass(**numbers):
+    given = dict(k=1, zeta=0.05, F=0.5, omega=0.8, k_stop=29, b=1, stops="right", tau=0.0, release="force")
+    return vs.Oscillator.named("one_mass", **(given | numbers))
+
+
+def branch_of(name, bounds, **numbers):
+    return vs.continue_orbit(vs.periodic_orbit(one_mass(**numbers), itinerary="R"), name, bounds)
+
+
+@pytest.mark.parametrize("preload", [0.0, *slow_cases(0.03)])
+def test_special_points_in_45_digits(preload):
+    branch = branch_of("omega", (0.3, 3), c_stop=0.5, preload=preload)
+    types = [one.type for one in branch.special]
+    assert types[0] == types[-1] == "graze" and {"flip", "fold"} <= set(types)
+    for special in branch.special:
+        off, change = distance_in_digits(special, pulled=preload > 0)
+        assert change < 1e-16 and np.abs(off).max() < 1e-12
+
+
+def touching_in_digits(special):
+    """Multipliers with the least contact at a graze of the free motion: of (1 - c e_v e_g) M, since v' = -c gap."""
+    q = special.orbit.system.linear
+    with mp.workdps(DIGITS):
+        M = ContactOrbit(q, [], 1).closure(mp.matrix(2, 1))
+        jump = mp.eye(2)
+        jump[1, 0] = -mpf(float(q.c_high)) / mpf(float(q.M[0, 0]))
+        return np.sort_complex(np.array(mp.eig(jump * M, left=False, right=False), complex))
+
+
+def grazes_at(branch, omega):
+    """The graze nearest to this frequency."""
+    found = [one for one in branch.special if one.type == "graze"]
+    return min(found, key=lambda one: abs(one.parameters["omega"] - omega))
+
+
+@pytest.mark.parametrize("c_stop, kinds", [
+    (0.5, ("persistence", "persistence")), (2.0, ("persistence", "nonsmooth fold")),
+])  # fmt: skip
+def test_grazes_are_corners(c_stop, kinds):
+    """The multipliers jump; where det(M - 1) changes its sign the orbits with the contact lie beside those without."""
+    branch = branch_of("omega", (0.3, 3), c_stop=c_stop)
+    values = branch.points.omega.values
+    for graze, kind, next_to in zip((branch.begins, branch.ends), kinds, (values[1], values[-2]), strict=True):
+        exact, omega = touching_in_digits(graze), graze.parameters["omega"]
+        assert np.abs(np.sort_complex(graze.multipliers) - exact).max() < 1e-12
+        (without,) = vs.switch(graze)
+        assert np.abs(np.sort_complex(without.multipliers) - exact).max() > 0.1
+        folds = np.prod(1 - exact).real * np.prod(1 - without.multipliers).real < 0
+        same_side = (next_to - omega) * (without.system.numbers["omega"] - omega) > 0
+        assert (graze.kind == "nonsmooth fold") == (kind == "nonsmooth fold") == folds == same_side
+        free = vs.continue_orbit(without, "omega", (0.3, 3))
+        assert grazes_at(free, omega).kind == kind  # seen from the other side
+
+
+def test_a_branch_in_the_preload_passes_from_one_end_of_contacts_to_the_other():
+    """From c |delta'| = preload on the mass leaves at the stop, and both releases are one."""
+    branch = branch_of("preload", (0, 2), c_stop=0.5, preload=0.0)
+    assert branch.ok and [one.type for one in branch.special] == ["boundary", "boundary"]
+    (contact,) = branch.ends.orbit.contacts
+    assert 0.5 * contact["v_release"] < 2
+    guess = [(contact["t_touch"], 1, contact["v_touch"])]
+    other = vs.periodic_orbit(one_mass(c_stop=0.5, preload=2, release="displacement"), guess=guess)
+    assert branch.ends.orbit.state == pytest.approx(other.state, abs=1e-12)
+    assert branch.ends.multipliers == pytest.approx(other.multipliers, abs=1e-12)
+
+
+def test_without_a_damper_both_releases_are_one():
+    branch = branch_of("c_stop", (0, 1), c_stop=0.5)
+    assert branch.ok and branch.begins.parameters["c_stop"] == 0
+    other = vs.periodic_orbit(one_mass(c_stop=0, release="displacement"), itinerary="R")
+    assert branch.begins.multipliers == pytest.approx(other.multipliers, abs=1e-12)
+    assert vs.periodic_orbit(one_mass(), itinerary="R").state == pytest.approx(other.state, abs=1e-12)
+
+
+def test_stops_that_have_not_relaxed_are_refused():
+    """Where e^{-k D/c} (1 + k/(c omega)) is not below rounding at the next touch, a time D after the release."""
+    orbit = vs.periodic_orbit(one_mass(c_stop=10), itinerary="R")
+    assert orbit.status == "unrelaxed"
+    branch = branch_of("c_stop", (1, 12), c_stop=2.0)
+    end = branch.ends
+    assert end.type == "unrelaxed"
+    c, (contact,) = end.parameters["c_stop"], end.orbit.contacts
+    away = end.orbit.system.period - (contact["t_release"] - contact["t_touch"])
+    assert np.exp(-29 / c * away) * (1 + 29 / c / 0.8) == pytest.approx(2**-53, rel=1e-6)
+    # a preload brings the stop back to its place in a finite time, exactly
+    preloaded = vs.periodic_orbit(one_mass(c_stop=5.8, preload=0.3), itinerary="R")
+    assert vs.periodic_orbit(one_mass(c_stop=5.8), itinerary="R").status == "unrelaxed" and preloaded.ok
+    again = vs.simulate(preloaded.system, preloaded.state, 20)
+    assert preloaded.stable and again.section[-1] == pytest.approx(preloaded.state, abs=1e-10)
+
+
+@pytest.mark.parametrize("names, bounds", [
+    (("omega", "F"), ((0.3, 3), (0.2, 1))),
+    *slow_cases(
+        (("omega", "k_stop"), ((0.3, 3), (20, 40))),
+        (("c_stop", "omega"), ((0, 3), (0.3, 3))),
+        (("preload", "zeta"), ((0, 1), (0, 0.3))),
+    ),
+])  # fmt: skip
+def test_newton_converges_on_curves(names, bounds):
+    """The gradient of a condition is exact: changes fall to rounding, in two steps by their squares."""
+    for special in branch_of("omega", (0.3, 3), c_stop=2.0).special:
+        if special.type == "graze" and "preload" in names:
+            continue  # at preload 0 grazes change their kind
+        curve = SolutionCurve(start_at(special, names), names, bounds)
+        place = first_place(curve)
+        place.x[:] += 1e-4 * np.cos(np.arange(place.x.size)).reshape(place.x.shape)
+        changes = []
+        for _ in range(7):
+            curve.take_numbers(place)
+            changes.append(curve.run_task(stepper.CORRECT, place, place.direction))
+        assert changes[6] < 1e-12 and changes[4] < 10 * changes[2] ** 1.5 + 1e-14, (special.type, changes)
+
+
+def test_a_curve_of_grazes_says_where_a_corner_begins_with_a_flip():
+    graze = branch_of("omega", (0.3, 3), c_stop=2.0).begins
+    curve = vs.bifurcation_curve(graze, ("c_stop", "omega"), ((0.1, 3), (0.3, 3)))
+    (point,) = [one for one in curve.special if one.type == "resonant_graze"]
+    c, mu = point.parameters["c_stop"], None
+    system = graze.orbit.system.replace(c_stop=c)
+    with mp.workdps(DIGITS):
+        M = ContactOrbit(system.replace(**point.parameters).linear, [], 1).closure(mp.matrix(2, 1))
+        jump = mp.eye(2)
+        jump[1, 0] = -mpf(c)
+        mu = mp.eig(jump * M, left=False, right=False)
+    assert min(abs(one + 1) for one in mu) < 1e-12
+
+
+def test_windows_of_a_rubber_stop():
+    """Every window has a label at both ends; the motion is stable inside and gone, or unstable, beyond."""
+    system = one_mass(zeta=0.02, c_stop=1.0, F=0.4)
+    data = vs.sweep(system, {"omega": np.linspace(0.7, 1.4, 15)}, transient=300, record=40)
+    windows = vs.windows(data)
+    assert (1, "R") in {(one.period, one.itinerary) for one in windows}
+    for one in windows:
+        for end, inwards in ((one.lower, 1), (one.upper, -1)):
+            if end.type == "boundary":
+                continue
+            assert end.type in ("graze", "fold", "flip") and end.error < 1e-12
+            value = end.parameters["omega"] + inwards * 1e-6
+            inside = vs.simulate(system.replace(omega=value), end.orbit.state, 2000 * one.period)
+            last = inside.section[-1], inside.section[-1 - one.period]
+            assert np.abs(last[0] - last[1]).max() < 1e-3
