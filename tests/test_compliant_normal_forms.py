@@ -32,6 +32,7 @@ def coefficient(special) -> tuple[float, np.ndarray]:
     ("one mass", "flip", 1),
     *slow_cases(
         ("one mass, damped stop", "flip", 0),
+        ("one mass, left by force", "flip", 1),
         ("R", "neimark_sacker", 1),
         ("R, stiff", "neimark_sacker", 0),
     ),

@@ -162,6 +162,9 @@ def test_a_mixed_machine_has_contacts_and_impacts():
 
 def test_files_hold_them(tmp_path):
     orbit = vs.periodic_orbit(one_mass(), itinerary="R")
+    data = orbit.to_xarray()
+    assert data.contact_t_touch.dims == ("contact",) and data.contact_max_force.values == orbit.contacts["max_force"]
+    assert orbit.to_dataframe().v_release.tolist() == orbit.contacts["v_release"].tolist()
     again = vs.load(orbit.save(tmp_path / "orbit.json"))
     assert again.ok and again.state == pytest.approx(orbit.state, abs=1e-14)
     branch = vs.continue_orbit(orbit, "omega", (0.7, 0.9))

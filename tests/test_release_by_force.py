@@ -142,6 +142,16 @@ def test_a_curve_of_grazes_says_where_a_corner_begins_with_a_flip():
     assert min(abs(one + 1) for one in mu) < 1e-12
 
 
+def test_a_curve_ends_where_a_stop_does_not_relax_any_more():
+    flip = [one for one in branch_of("omega", (0.3, 3), c_stop=0.5).special if one.type == "flip"][1]
+    curve = vs.bifurcation_curve(flip, ("omega", "c_stop"), ((0.3, 3), (0.1, 9)))
+    (end,) = [one for one in curve.special if one.type == "unrelaxed"]
+    c, omega = end.parameters["c_stop"], end.parameters["omega"]
+    (contact,) = end.orbit.contacts
+    away = end.orbit.system.period - (contact["t_release"] - contact["t_touch"])
+    assert np.exp(-29 / c * away) * (1 + 29 / c / omega) == pytest.approx(2**-53, rel=1e-6)
+
+
 def test_windows_of_a_rubber_stop():
     """Every window has a label at both ends; the motion is stable inside and gone, or unstable, beyond."""
     system = one_mass(zeta=0.02, c_stop=1.0, F=0.4)

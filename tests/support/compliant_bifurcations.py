@@ -26,6 +26,7 @@ BRANCHES = {
     "one mass": (one_mass(), "R", "omega", (0.3, 3)),
     "one mass, preloaded": (one_mass(preload=0.05, omega=0.75), "R", "omega", (0.3, 3)),
     "one mass, damped stop": (one_mass(c_stop=0.5, preload=0.03), "R", "omega", (0.3, 3)),
+    "one mass, left by force": (one_mass(c_stop=0.5, release="force"), "R", "omega", (0.3, 3)),
     "R": (paper(4, 1e2), "R", "b", (1, 7)),
     "R, stiff": (paper(4, 1e4), "R", "b", (1, 7)),
     "LR": (paper(2, 1e2), "LR", "b", (1, 7)),

@@ -13,7 +13,7 @@ from vibro_sweep.analysis.periodic.contact_table import contacts_between
 from vibro_sweep.analysis.periodic.event_equations import EventEquations
 from vibro_sweep.analysis.periodic.itinerary import canonical_start, word
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.analysis.single.result import Result, impact_table, shows_force
+from vibro_sweep.analysis.single.result import Result, event_table, shows_force
 from vibro_sweep.engine.impulses import flights
 from vibro_sweep.engine.impulses.flow import constrained_flow, contact_coordinates, contact_flow, flow
 from vibro_sweep.engine.impulses.free_modes import ResonanceError
@@ -247,7 +247,8 @@ class PeriodicOrbit(Result):
         return self.sample([0.0])[0]
 
     def to_xarray(self) -> "xarray.Dataset":
-        """The orbit as a Dataset: states over `section`, impacts over `impact`, rests over `rest`, multipliers.
+        """The orbit as a Dataset: states over `section`, impacts, contacts and rests over `impact`, `contact`
+        and `rest`, multipliers.
 
         Raises ValueError for an orbit without a motion, and for one of a Family, which has no numbers with names.
         """
@@ -263,7 +264,7 @@ class PeriodicOrbit(Result):
         return data.assign(multiplier_re=("multiplier", values.real), multiplier_im=("multiplier", values.imag))
 
     def _table(self) -> dict[str, list]:
-        return impact_table(self.impacts)
+        return event_table(self)
 
     def plot(self, width: float | None = None, kind: str | None = None):
         """Phase portrait of the gap and its time history, impacts marked: a matplotlib Figure, `width` mm wide.

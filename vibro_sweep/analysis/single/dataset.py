@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from vibro_sweep.analysis.single.orbit import Orbit
     from vibro_sweep.plotting.film import Film
 
-_UNITS = {"t": "s", "xdot": "m s-1", "x": "m", "v": "m s-1"}  # in SI, of fields that begin so
+_UNITS = {"t": "s", "xdot": "m s-1", "x": "m", "v": "m s-1", "max_p": "m", "max_f": "N"}  # in SI, of fields
 SAMPLES = 400  # of a picture, in a forcing period
 IN_CONTACT = 65  # in a contact, besides; the first and the last one
 EDGE = 1e-6  # of its length within it: at the touch itself rounding says on which side of the stop the mass is
@@ -27,7 +27,7 @@ EDGE = 1e-6  # of its length within it: at the touch itself rounding says on whi
 
 def dataset_of(orbit: Any, times: np.ndarray, section: np.ndarray, about: dict[str, Any]) -> "xarray.Dataset":
     """Of an Orbit or a PeriodicOrbit: states x1 .. vN over `section` at these times (m,), its coordinate t; impacts
-    over `impact`, rests over `rest`.
+    over `impact`, contacts over `contact`, rests over `rest`.
 
     These are named as the fields of `Orbit`: `impact_t`, .., `rest_t_on`, ..; where the oscillator is not a System also
     of all masses, `impact_x1`, `impact_xdot1`, .. Attributes: numbers and options of the oscillator, and `about`.
@@ -37,6 +37,7 @@ def dataset_of(orbit: Any, times: np.ndarray, section: np.ndarray, about: dict[s
     system = orbit.system
     variables = {name: ("section", section[:, i]) for i, name in enumerate(state(system.masses))}
     variables |= {f"impact_{key}": ("impact", one) for key, one in columns_of(orbit.impacts).items()}
+    variables |= {f"contact_{key}": ("contact", one) for key, one in columns_of(orbit.contacts).items()}
     variables |= {f"rest_{key}": ("rest", one) for key, one in columns_of(orbit.sticking).items()}
     options = {name: value for name, value in system.options.items() if value is not None and name != UNITS.name}
     data = xarray.Dataset(variables, {"t": ("section", times)}, system.parameters() | options | about)
@@ -47,7 +48,7 @@ def dataset_of(orbit: Any, times: np.ndarray, section: np.ndarray, about: dict[s
 
 def _unit(name: str) -> str:
     """In SI, of what a field of `Orbit` holds."""
-    field = name.removeprefix("impact_").removeprefix("rest_")
+    field = name.removeprefix("impact_").removeprefix("contact_").removeprefix("rest_")
     return next((unit for beginning, unit in _UNITS.items() if field.startswith(beginning)), "1")
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from vibro_sweep.analysis.single.exponent_array import Exponents
-from vibro_sweep.analysis.single.result import Result, impact_table, shows_force
+from vibro_sweep.analysis.single.result import Result, event_table, shows_force
 from vibro_sweep.engine import points
 from vibro_sweep.engine.compliant.law import LOGGED
 from vibro_sweep.engine.halting import interruptible
@@ -122,7 +122,7 @@ class Orbit(Result):
         return dataset_of(self, self.section_times, self.section, {"kind": "orbit", **about})
 
     def _table(self) -> dict[str, list]:
-        return impact_table(self.impacts)
+        return event_table(self)
 
     def plot(self, periods: int = 4, width: float | None = None, kind: str | None = None) -> Figure:
         """Phase portrait and time history of the last forcing periods, impacts marked; so many mm wide.

@@ -32,7 +32,7 @@ class Result:
         raise NotImplementedError
 
     def to_dataframe(self) -> "pandas.DataFrame":
-        """The table: impacts of an orbit, special points of a branch or a curve, or windows.
+        """The table: contacts, else impacts, of an orbit, special points of a branch or a curve, or windows.
 
         Raises MissingPackageError where pandas is not installed.
         """
@@ -109,6 +109,7 @@ def columns_of(records: np.ndarray) -> dict[str, np.ndarray]:
     return result
 
 
-def impact_table(impacts: np.ndarray) -> dict[str, list]:
-    """The table of an orbit: its impacts."""
-    return {name: values.tolist() for name, values in columns_of(impacts).items()}
+def event_table(orbit: Any) -> dict[str, list]:
+    """The table of an orbit: its contacts where stops are compliant, else its impacts."""
+    events = orbit.contacts if len(orbit.contacts) else orbit.impacts
+    return {name: values.tolist() for name, values in columns_of(events).items()}
