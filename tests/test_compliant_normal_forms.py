@@ -53,6 +53,8 @@ def test_coefficient_agrees_with_differences_of_the_map_in_45_digits(name, kind,
     state, times, _ = exact.solve(state, [0.6 * flight, 0.6 * flight + release - touch])
     with mp.workdps(45):
         mu = -1 if kind == "flip" else mp.expj(critical_angle(s))
-        expected = float(third_order(ContactMap(exact, state, times), mu)) / (3 if kind == "flip" else 1)
+        expected = float(third_order(ContactMap(exact, [*state[::2], *state[1::2]], times), mu)) / (
+            3 if kind == "flip" else 1
+        )
     assert found == pytest.approx(expected * np.linalg.norm(before) ** 2, rel=1e-7)
     assert special.criticality == ("super" if expected < 0 else "sub")

@@ -98,7 +98,7 @@ class Bifurcation:
         second = orbit.residual(own + WIDE * v) - 2 * F + orbit.residual(own - WIDE * v)
         return (w.T * second)[0] / WIDE**2
 
-    def solve(self, state, times, touching=(), theta=None, steps=4):
+    def solve(self, state, times, touching=(), theta=None, steps=6):
         """How far the free numbers move from where the package has them, the last change, and the orbit's multipliers.
 
         state, times : as of `ContactOrbit.solve`; touching: times of the touches; theta: of a pair
@@ -110,8 +110,8 @@ class Bifurcation:
             F, J = self._residual(u), mp.matrix(len(u))
             for j in range(len(u)):
                 ahead = u.copy()
-                ahead[j] += STEP
-                J[:, j] = (self._residual(ahead) - F) / STEP
+                ahead[j] += WIDE
+                J[:, j] = (self._residual(ahead) - F) / WIDE
             for _ in range(steps):
                 change = mp.lu_solve(J, F)
                 u -= change

@@ -125,8 +125,7 @@ class ContactMap:
     """The map over the period of a `ContactOrbit`, of states (x .., v ..) at its t = 0, by where its flights end."""
 
     def __init__(self, orbit: ContactOrbit, state, times):
-        self.orbit, self.times = orbit, list(times)
-        self.centre = [mpf(a) for a in [*state[::2], *state[1::2]]]
+        self.orbit, self.centre, self.times = orbit, list(state), list(times)
 
     def __call__(self, change):
         """The change of the image."""

@@ -1,6 +1,7 @@
 """Special points of branches and curves with contacts, held against thirty digits."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from reference.compliant_bifurcations import Bifurcation
@@ -21,6 +22,10 @@ def one_mass(**numbers):
     return vs.Oscillator.named("one_mass", **(given | numbers))
 
 
+CHAIN = vs.Oscillator.named(
+    "chain", m=[1, 2, 1.5], k=[1, 1, 0.5, 1], c=[0.05] * 4, force=[0, 0, 1], omega=0.5, b=1.2, stops="right",
+    stop_at=3, k_stop=40, c_stop=0.3, tau=0.0,
+)  # fmt: skip
 # of branches: system, itinerary, number, bounds
 BRANCHES = {
     "one mass": (one_mass(), "R", "omega", (0.3, 3)),
@@ -31,6 +36,19 @@ BRANCHES = {
     "R, stiff": (paper(4, 1e4), "R", "b", (1, 7)),
     "LR": (paper(2, 1e2), "LR", "b", (1, 7)),
     "LR, preloaded": (paper(2, 1e2, preload=0.5), "LR", "b", (1, 7)),
+    "one mass, its force": (one_mass(), "R", "F", (0.05, 1.5)),
+    "one mass, its damping": (one_mass(), "R", "zeta", (0, 0.5)),
+    "one mass, its clearance": (one_mass(), "R", "b", (0.2, 3)),
+    "one mass, left by force, its force": (one_mass(c_stop=0.5, release="force"), "R", "F", (0.05, 1.5)),
+    "R, its frequency": (paper(4, 1e2), "R", "omega", (0.4, 0.9)),
+    "R, its mass": (paper(4, 1e2), "R", "mu_m", (1, 20)),
+    "R, its spring": (paper(4, 1e2), "R", "mu_k", (1, 10)),
+    "R, its damping": (paper(4, 1e2), "R", "zeta", (0, 0.2)),
+    "LR, its frequency": (paper(2, 1e2), "LR", "omega", (0.4, 0.9)),
+    "LR, its spring": (paper(2, 1e2), "LR", "mu_k", (1, 10)),
+    "LR, its mass": (paper(3, 1e2), "LR", "mu_m", (1, 20)),
+    "LR, stops unlike": (paper(2, 1e2, k_stop_left=50), "LR", "b", (1, 7)),
+    "three masses": (CHAIN, "R", "omega", (0.2, 1.5)),
 }
 CONDITIONS = {
     "fold": ["fold"],
@@ -50,6 +68,7 @@ CONDITIONS = {
     "flip_graze": ["flip"],
     "pitchfork_graze": ["flip"],
     "neimark_sacker_graze": ["pair"],
+    "double_graze": [],
 }
 ANGLES = {"resonance_1_3": 2 * np.pi / 3, "resonance_1_4": np.pi / 2}
 NO_LENGTH = 1e-7  # of the period: a contact that short is a touch
@@ -60,14 +79,18 @@ def branch_of(name):
     return vs.continue_orbit(vs.periodic_orbit(system, itinerary=itinerary), number, bounds)
 
 
-def distance_in_digits(special, pulled=False) -> tuple[np.ndarray, float]:
-    """By how much the parameters of a special point differ from those of the reference, and its last change.
+class Described(NamedTuple):
+    """A special point as the reference needs it: the oscillator with t = 0 in its longest flight, and guesses."""
 
-    pulled : whether its contacts end by their force although there is a preload
-    """
+    q: object
+    of: tuple  # sides, periods, sigma
+    guess: tuple  # state, times of contacts, times of touches, theta
+    touched: list  # stops of the touches
+
+
+def described(special) -> Described:
     system, solution = special.orbit.system, special.orbit._solution
-    names, family = list(special.parameters), family_of(system)
-    q, P = family.linear, solution.P
+    q, P = family_of(system).linear, solution.P
     touching, sides = [], []
     if solution.K:
         lengths = np.full(solution.K, np.inf)
@@ -75,8 +98,8 @@ def distance_in_digits(special, pulled=False) -> tuple[np.ndarray, float]:
         gone = np.flatnonzero(np.abs(lengths) < NO_LENGTH * P)
         touching, sides = solution.times[gone].tolist(), [solution.sides[k] for k in gone]
         solution = bare(solution, gone) if len(gone) else solution
-    if special.type.endswith("graze") and not touching:
-        touching, sides = [solution.nearest[1]], [solution.nearest[2]]
+    if special.type.endswith("graze") and len(touching) < 1 + (special.type == "double_graze"):
+        touching, sides = [*touching, solution.nearest[1]], [*sides, solution.nearest[2]]
     # t = 0 of the reference is in the middle of the longest flight
     begins, ends = (solution.times, solution.ends) if solution.K else (np.array([touching[0] + P / 2]),) * 2
     gaps = np.append(begins[1:], begins[0] + P) - ends
@@ -93,21 +116,23 @@ def distance_in_digits(special, pulled=False) -> tuple[np.ndarray, float]:
         int(side) * (solution.sigma ** int(np.floor((t - start) / P))) for side, t in zip(sides, touching, strict=True)
     ]
     state = type(special.orbit)(system, "ok", solution, (0, 0)).sample([start])[0]
-    moved = q._replace(tau=float(q.tau + q.omega * start))
+    begun = q._replace(tau=float(q.tau + q.omega * start))
     theta = None
     if "pair" in CONDITIONS[special.type]:
         mu = solution.multipliers
         theta = float(np.angle(mu[np.argmin(np.where(mu.imag > 1e-9, np.abs(np.abs(mu) - 1), np.inf))]))
-    exact = Bifurcation(
-        moved,
-        [family.derivative(name)._replace(tau=0.0) for name in names],
-        np.array(solution.sides)[order] * signs,
-        solution.half_periods / 2,
-        solution.sigma,
-        CONDITIONS[special.type],
-        sides,
-        ANGLES.get(special.type),
-        pulled,
-    )
-    off, change = exact.solve(state, around, touched, theta)
+    of = np.array(solution.sides)[order] * signs, solution.half_periods / 2, solution.sigma
+    return Described(begun, of, (state, around, touched, theta), sides)
+
+
+def distance_in_digits(special, pulled=False) -> tuple[np.ndarray, float]:
+    """By how much the parameters of a special point differ from those of the reference, and its last change.
+
+    pulled : whether its contacts end by their force although there is a preload
+    """
+    d, family = described(special), family_of(special.orbit.system)
+    slopes = [family.derivative(name)._replace(tau=0.0) for name in special.parameters]
+    conditions = CONDITIONS[special.type]
+    exact = Bifurcation(d.q, slopes, *d.of, conditions, d.touched, ANGLES.get(special.type), pulled)
+    off, change = exact.solve(*d.guess)
     return np.array(off), change
