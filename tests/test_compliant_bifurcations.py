@@ -127,7 +127,7 @@ def test_windows_of_one_elastic_stop():
     "seeds",
     [
         range(1, 2),
-        *slow_cases(range(4), range(1000, 1003)),
+        *slow_cases(range(4), range(1000, 1004)),
         pytest.param(range(12), marks=pytest.mark.soak),
         pytest.param(range(1000, 1010), marks=pytest.mark.soak),
     ],

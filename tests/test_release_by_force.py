@@ -142,6 +142,16 @@ def test_a_curve_of_grazes_says_where_a_corner_begins_with_a_flip():
     assert min(abs(one + 1) for one in mu) < 1e-12
 
 
+@pytest.mark.parametrize("preload", [0.0, 0.05, 0.25, 0.6])
+def test_two_contacts_come_back_whatever_the_preload(preload):
+    """The damper pulls with 0.51 at the release: up to there contacts end by force, beyond it at the stop."""
+    numbers = dict(k=0.67, zeta=0.056, F=1.54, omega=1.88, k_stop=198, c_stop=0.527, b=0.475, tau=0.97)
+    system = vs.Oscillator.named("one_mass", **numbers, preload=preload, stops="both", release="force")
+    for moved in (system, system.replace(offset=1e-3)):
+        orbit = vs.periodic_orbit(moved, itinerary="LR")
+        assert orbit.ok and vs.simulate(moved, orbit.state, 1).section[-1] == pytest.approx(orbit.state, abs=1e-13)
+
+
 def test_a_curve_ends_where_a_stop_does_not_relax_any_more():
     flip = [one for one in branch_of("omega", (0.3, 3), c_stop=0.5).special if one.type == "flip"][1]
     curve = vs.bifurcation_curve(flip, ("omega", "c_stop"), ((0.3, 3), (0.1, 9)))

@@ -2,7 +2,7 @@
 compliant stops.
 
 The unknowns are the phase of each event and, where it lasts its length in phase, else its velocity jump. The states
-follow from them linearly, since the motion repeats itself. Where the mass rests two multipliers are 0.
+follow from them, since the motion repeats itself. Where the mass rests two multipliers are 0.
 """
 
 import numpy as np
@@ -13,6 +13,7 @@ from vibro_sweep.engine.continuation.workspace import TEST
 
 MOST_STEPS = 30
 ROUNDED = 8 * np.finfo(float).eps  # of phases
+CLOSINGS = 3  # to know from the state which contacts end by force
 LONGEST = 0.02  # step of Newton's method, in parts of the period and of the fastest jump
 
 
@@ -35,15 +36,22 @@ class RestingOrbit:
         self._sharpen()
 
     def _close(self) -> None:
-        """The states that follow from phases, jumps and lengths, and the equations there."""
+        """The states that follow from phases, jumps and lengths, and the equations there.
+
+        They follow linearly, but for contacts that end by force only where they are fast: there once more from these.
+        """
         x, e, n = self.place.x, self.events, self.n
         x[:, :n] = 0.0
-        self.equations.run_task(stepper.FOLLOW)
-        self.equations.run_task(stepper.ASSEMBLE)
-        through = np.eye(n)
-        for k in range(len(x)):
-            through = e["E"][k, 0, :, :n] @ (e["carry"][k, :, :n] @ through if k in self.rests else through)
-        x[0, :n] = np.linalg.solve(self.sigma * np.eye(n) - through, e["landing"][-1])
+        self._follow()
+        for _ in range(CLOSINGS if self.q.by_force else 1):
+            through = np.eye(n)
+            for k in range(len(x)):
+                through = e["E"][k, 0, :, :n] @ (e["carry"][k, :, :n] @ through if k in self.rests else through)
+            left = e["landing"][-1] - self.sigma * x[0, :n]
+            x[0, :n] += np.linalg.solve(self.sigma * np.eye(n) - through, left)
+            self._follow()
+
+    def _follow(self) -> None:
         self.equations.run_task(stepper.FOLLOW)
         self.equations.run_task(stepper.ASSEMBLE)
 
