@@ -217,6 +217,19 @@ def test_what_a_sweep_observes_is_what_an_orbit_has():
         assert 0 < float(data.contact_time[i]) < 1
 
 
+@pytest.mark.parametrize("ratio", [0.0, 0.3])
+def test_a_sweep_has_the_largest_force_and_penetration_to_rounding(ratio):
+    """Orbits side by side find peaks in closed form, single orbits in series of their own."""
+    numbers = PAPER | dict(b=3, k_stop=3700, c_stop=2 * ratio * math.sqrt(3700))
+    start, tones = (0.1, 0.2, 0.3, 0.1), np.linspace(0.6, 0.68, 8)
+    data = vs.sweep(vs.System(**numbers), {"omega": tones}, transient=0, record=8, start=start, observe=["contacts"])
+    for i, omega in enumerate(tones):
+        touched = vs.simulate(vs.System(**numbers | dict(omega=omega)), start, 8).contacts
+        assert len(touched) > 2
+        for found, name in ((data.penetration_max, "max_penetration"), (data.contact_force_max, "max_force")):
+            assert float(found[i]) == pytest.approx(np.nanmax(touched[name]), rel=2e-14)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("place", [0, 1])
 def test_a_rest_on_a_preload_ends_by_being_pressed_in(place):
