@@ -13,7 +13,7 @@ from vibro_sweep.engine.simd.lanes import bits, select
 LOOKS = 5  # at the end, each followed by a step towards it
 CLOSE = 2.0**-54  # of the time, a fourth power: what a step of fourth order leaves
 TOP_LOOKS = 12  # at a peak
-NEAR_TOP = 2.0**-10  # rate times the last step to it: what is left is a fifth power over 120
+NEAR_TOP = 2.0**-9  # rate times the last step to it: what is left is a fifth power over 120
 HALVES = 5  # of e^-x, x below DECAY
 LOG2_E, LOG_2 = 1.4426950408889634, (0.6931471803691238, 1.9082149292705877e-10)  # ln 2 in two parts
 FACTORIALS = tuple(1.0 / math.factorial(n) for n in range(15))
