@@ -11,7 +11,6 @@ from scipy.optimize import brentq
 from support import slow_cases
 
 import vibro_sweep as vs
-from vibro_sweep.driver.source_file import SourceError
 from vibro_sweep.scene import SceneError, parse_scene
 
 FREE = dict(k=0, zeta=0, F=0, omega=1, b=1, stops="right", tau=0.0)
@@ -398,12 +397,6 @@ def test_scenes_that_are_refused(more, key):
 def test_what_belongs_to_rigid_stops_says_so(call):
     with pytest.raises(ValueError, match=r"(of|with) rigid stops"):
         call(vs.System(**PAPER, b=5, k_stop=100))
-
-
-def test_windows_of_stops_that_go_on_relaxing_are_refused():
-    system = vs.System(**PAPER, b=5, k_stop=100, c_stop=1, release="force")
-    with pytest.raises(SourceError, match=r"it must be displacement, .* after its force a stop goes on relaxing"):
-        vs.windows(vs.sweep(system, {"b": [5, 6]}, transient=10, record=10))
 
 
 def test_numbers_follow_those_of_the_right_stop():
