@@ -3,15 +3,25 @@
 With `-m slow` all of BRANCHES and CURVES. What was found: tests/data/compliant_bifurcations.log.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from support import compliant_branches, slow_cases
-from support.compliant_bifurcations import BRANCHES, CONDITIONS, branch_of, distance_in_digits, one_mass
+from support.compliant_bifurcations import (
+    BRANCHES,
+    CONDITIONS,
+    branch_of,
+    distance_in_digits,
+    one_mass,
+    turning_within,
+)
 
 import vibro_sweep as vs
 from vibro_sweep.analysis.continuation.first_point import first_place
 from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve
 from vibro_sweep.analysis.curves.curve_start import start_at
+from vibro_sweep.analysis.periodic.periodic_orbit import orbit_of
 from vibro_sweep.engine.continuation import stepper
 
 ENDS = ("boundary", "closed")
@@ -104,6 +114,41 @@ def test_folds_run_beside_grazes():
         beyond.append(F - np.hypot(1 - omega**2, 2 * 0.05 * omega))  # of where the free motion has the size 1
     assert np.abs(beyond[1]).max() < 1e-12
     assert np.all(beyond[0] > 1e-6) and np.all(beyond[0] < 1e-3)
+
+
+TWICE = dict(k=2.66, zeta=0.036, F=0.49, omega=0.715, k_stop=54.5, c_stop=2.38, b=0.058, offset=0, tau=0.545)
+OVER_AN_END = dict(
+    k=0.354, zeta=0.041, F=0.284, omega=1.598, k_stop=4.51, c_stop=1.2, b=0.0276, offset=0, tau=3.5685, stops="left"
+)
+
+
+@pytest.mark.parametrize("numbers, bounds", [
+    (TWICE, (-0.0276, 0.017)),
+    *slow_cases((TWICE | dict(preload=0.01), (-0.0276, 0.017)), (OVER_AN_END, (-0.01, 0.01))),
+])  # fmt: skip
+def test_two_contacts_become_one(numbers, bounds, tmp_path):
+    """At one place for both branches, that of the orbits with two contacts and that with one, in 45 digits."""
+    system = one_mass(**numbers)
+    simulated = vs.simulate(system, (0, 0), 600).section[-1]
+    branch = vs.continue_orbit(vs.periodic_orbit(system, simulated, periods=2), "offset", bounds)
+    (special,) = [one for one in branch.special if one.type == "split"]
+    compare(special)
+    assert special.error < 1e-12
+    contacts = np.sort(special.orbit.contacts, order="t_touch")
+    begins = np.append(contacts["t_touch"][1:], contacts["t_touch"][0] + special.orbit.period * system.period)
+    assert (begins - contacts["t_release"]).min() == pytest.approx(0, abs=1e-14)
+    read = vs.load(branch.save(tmp_path / "branch.h5"))
+    (again,) = [one for one in read.special if one.type == "split"]
+    assert again.multipliers == pytest.approx(special.multipliers, abs=1e-12)
+    solution, _, _ = turning_within(special)
+    beside = [solution.family.replace(offset=special.parameters["offset"] + step) for step in (-1e-6, 1e-6)]
+    found = [replace(solution, family=family).corrected() for family in beside]
+    (one,) = [one for one in found if one.hold > 0]
+    other = vs.continue_orbit(orbit_of(system.replace(offset=one.family.numbers["offset"]), one), "offset", bounds)
+    ends = [end for end in (other.begins, other.ends) if end.type == "split"]
+    assert min(abs(end.parameters["offset"] - special.parameters["offset"]) for end in ends) < 1e-12
+    for end in ends:
+        compare(end)
 
 
 def test_windows_of_one_elastic_stop():

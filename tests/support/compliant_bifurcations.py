@@ -8,6 +8,7 @@ from reference.compliant_bifurcations import Bifurcation
 
 import vibro_sweep as vs
 from vibro_sweep.analysis.branches.special import bare
+from vibro_sweep.analysis.periodic.joined_contacts import flights_between, joined
 from vibro_sweep.model.linear import family_of
 
 PAPER = dict(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63)
@@ -56,6 +57,7 @@ CONDITIONS = {
     "pitchfork": ["flip"],
     "neimark_sacker": ["pair"],
     "graze": [],
+    "split": [],
     "cusp": ["fold", "cusp"],
     "fold_flip": ["fold", "flip"],
     "fold_neimark_sacker": ["fold", "pair"],
@@ -92,7 +94,10 @@ def described(special) -> Described:
     system, solution = special.orbit.system, special.orbit._solution
     q, P = family_of(system).linear, solution.P
     touching, sides = [], []
-    if solution.K:
+    if special.type == "split":
+        solution, time, side = turning_within(special)
+        touching, sides = [time], [side]
+    elif solution.K:
         lengths = np.full(solution.K, np.inf)
         lengths[list(solution.rests)] = solution.ends - solution.times[list(solution.rests)]
         gone = np.flatnonzero(np.abs(lengths) < NO_LENGTH * P)
@@ -123,6 +128,22 @@ def described(special) -> Described:
         theta = float(np.angle(mu[np.argmin(np.where(mu.imag > 1e-9, np.abs(np.abs(mu) - 1), np.inf))]))
     of = np.array(solution.sides)[order] * signs, solution.half_periods / 2, solution.sigma
     return Described(begun, of, (state, around, touched, theta), sides)
+
+
+def turning_within(special):
+    """The orbit with one contact in place of two that meet; when, and at which stop, the mass comes back within it."""
+    solution = special.orbit._solution
+    apart = flights_between(solution)
+    if apart.min() == 0:
+        index = int(apart.argmin())
+        return joined(solution, index), solution.ends[solution.rests.index(index)], solution.sides[index]
+    orbit, found = type(special.orbit)(special.orbit.system, "ok", solution, (0, 0)), []
+    for begin, end, side in zip(solution.times, solution.ends, solution.sides, strict=True):
+        times = np.linspace(begin, end, 4001)[1:-1]
+        depth = side * (orbit.sample(times)[:, 0::2] @ family_of(special.orbit.system).linear.normal)
+        inner = np.flatnonzero((depth[1:-1] < depth[:-2]) & (depth[1:-1] < depth[2:])) + 1
+        found += [(depth[k], times[k], side) for k in inner]
+    return solution, *min(found)[1:]
 
 
 def distance_in_digits(special, pulled=False) -> tuple[np.ndarray, float]:

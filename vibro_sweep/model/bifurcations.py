@@ -61,8 +61,9 @@ TYPES = (
     Bifurcation("failed", "the branch could not be followed any further",
                 advice="What was computed is valid. Begin from an orbit beyond that place, or go round it in "
                        "another parameter."),
-    Bifurcation("split", "within a contact the mass comes back to its stop: the contact is split in two",
-                advice="Orbits with one contact more exist beyond: `simulate` finds them where they attract."),
+    Bifurcation("split", "within a contact the mass comes back to its stop: two contacts become one",
+                advice="Orbits with one contact more, or less, exist beyond: `simulate` finds them where they are "
+                       "attractors."),
     Bifurcation("unrelaxed", "with `release: force` a stop is touched before it has relaxed: no bifurcation",
                 advice="The motion goes on: `simulate` and `sweep` compute it. Branches need stops that are at rest "
                        "again at their next touch."),
@@ -133,7 +134,7 @@ CODIMENSION_TWO = (
     Point("closed", "", "the curve comes back to itself"),
     Point("boundary", "", "boundary of the region that was looked at"),
     Point("failed", "", "the curve could not be followed any further"),
-    Point("split", "", "within a contact the mass comes back to its stop: the contact is split in two"),
+    Point("split", "", "within a contact the mass comes back to its stop: two contacts become one"),
     Point("unrelaxed", "", "with `release: force` a stop is touched before it has relaxed: no bifurcation"),
 )  # fmt: skip
 CODES_OF_CURVES = {one.name: code for code, one in enumerate(CODIMENSION_TWO)}

@@ -18,6 +18,13 @@ from vibro_sweep.model.bifurcations import TYPES
 ROUNDED = 1e-9  # of a step, by which rounding may put an event behind its end
 
 
+def _stays(point: Point) -> float:
+    return min(point.stays, 1.0)
+
+
+SPLIT = Event("split", _stays)
+
+
 def ends_between(curve: SolutionCurve, bounds, a: Point, b: Point) -> list[Event]:
     """The events that may end the branch from a, which is real, to b."""
     events, q = [], curve.orbit.family.linear
@@ -31,7 +38,7 @@ def ends_between(curve: SolutionCurve, bounds, a: Point, b: Point) -> list[Event
         if a.releases[i] > 0 >= b.releases[i]:
             events.append(Event("sticking", lambda point, i=i: point.releases[i]))
     if a.stays > 0 >= b.stays:
-        events.append(Event("split" if np.any(q.is_compliant(curve.orbit.sides)) else "sticking", _stays))
+        events.append(SPLIT if np.any(q.is_compliant(curve.orbit.sides)) else Event("sticking", _stays))
     if a.relaxed > 0 >= b.relaxed:
         events.append(Event("unrelaxed", lambda point: min(point.relaxed, 1.0)))
     if b.stop_distance <= 0 < a.stop_distance or _passes(b):
@@ -39,10 +46,6 @@ def ends_between(curve: SolutionCurve, bounds, a: Point, b: Point) -> list[Event
         test = _positive_at(a, lambda point: min(point.stop_distance, most))
         events.append(Event("graze", test, touches=True))
     return events
-
-
-def _stays(point: Point) -> float:
-    return min(point.stays, 1.0)
 
 
 def first_end(curve: SolutionCurve, events: list[Event], a: Point, b: Point) -> LocatedEvent | None:

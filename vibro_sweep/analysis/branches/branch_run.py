@@ -1,6 +1,7 @@
 """A run along a branch in one direction: steps of adaptive length, what they pass, and where the branch ends."""
 
 import math
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -13,6 +14,7 @@ from vibro_sweep.analysis.branches.looking import hidden_between
 from vibro_sweep.analysis.branches.own_birth import before_birth, lands_on_birth, own_birth
 from vibro_sweep.analysis.branches.passed_births import before_passed, how_many_on, passed
 from vibro_sweep.analysis.branches.special import SpecialPoint, graze_at, is_smooth, vanishing
+from vibro_sweep.analysis.branches.split_contacts import joined_contacts
 from vibro_sweep.analysis.continuation.events import Event, LocatedEvent
 from vibro_sweep.analysis.continuation.point import Point, along
 from vibro_sweep.analysis.continuation.recorded import Rows, join
@@ -74,7 +76,7 @@ class BranchRun:
                 return
             looked = len(self.rows) - 1
             if reason == stepper.FAILED or a is None or b is None:
-                if self._over_birth(compiled, [self._count()]):
+                if self._over_birth(compiled, [self._count()]) or self._join_contacts():
                     return
                 break
             if reason == stepper.CLOSED:
@@ -105,6 +107,20 @@ class BranchRun:
         del self.special[how_many_on(kept, self.special) :]
         if not self._pass(a, b):
             self.special.append(self._at("failed", a, math.nan))
+        return True
+
+    def _join_contacts(self) -> bool:
+        """End where two contacts become one behind the last point. False: there are none."""
+        last = self.points.taken(np.s_[-1:])
+        u = np.concatenate([last.t[0], last.D[0], last.ends[0]])
+        found = joined_contacts(self.curve, replace(self.curve.orbit, family=self.curve.oscillators.at(last.p), u=u))
+        if found is None:
+            return False
+        (_, _, place, error), both = found
+        self._add_solution(place.value, both)
+        system = self.system.replace(**{self.name: place.value})
+        multipliers = place.solution.multipliers
+        self.special.append(SpecialPoint("split", {self.name: place.value}, orbit_of(system, both), multipliers, error))
         return True
 
     def _count(self, parts: int | None = None) -> int:
