@@ -69,8 +69,8 @@ def close(f, c, place, closing, b):
         approach(f, x, e)
         if i > 0 and is_short(f, c, b, i - 1):
             before = b.events[i - 1]
-            e.gap = before.gap + grown(f, before, 0)
-            e.motion[0] = before.motion[0] + place.x[i - 1, n + 1] + grown(f, before, N)
+            e.gap = before.gap + grown(f, before, before.turn, 0)
+            e.motion[0] = before.motion[0] + place.x[i - 1, n + 1] + grown(f, before, before.turn, N)
         leave(f, c, i, x, e, work)
         land(f, e)
         for r in range(n):

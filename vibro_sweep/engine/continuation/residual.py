@@ -23,7 +23,7 @@ import math
 from vibro_sweep.engine.continuation.chatter_tail import end_of_chatter, put_tail
 from vibro_sweep.engine.continuation.constrained_gap import put_rest
 from vibro_sweep.engine.continuation.flight_tables import flight
-from vibro_sweep.engine.continuation.lasting import corner_of, is_watched, last
+from vibro_sweep.engine.continuation.lasting import corner_of, is_contact, is_watched, last
 from vibro_sweep.engine.continuation.moving_flow import HIGH, LOW, OMEGA, ONE_PLUS_R_HIGH, ONE_PLUS_R_LOW
 from vibro_sweep.engine.continuation.problem import STICK, width_of
 from vibro_sweep.engine.continuation.reflections import copy_row, reflect
@@ -159,14 +159,27 @@ def is_short(f, c, b, i):
 
 
 @jit
-def grown(f, e, r):
-    """The growth of coordinate r in the flight after an event, of all of its motion, not formed as a difference."""
+def hardly_leaves(f, c, b, i):
+    """Whether the mass leaves its stop so shortly between this contact and the next that states would lose its
+    digits."""
+    j = i + 1 if i + 1 < len(c.sides) else 0
+    same = c.sides[j] == (c.sides[i] if j > 0 else c.sigma * c.sides[i]) and c.rests[i] and c.rests[j] and i != j
+    pressed = same and is_contact(c.compliant, c.sides[i]) and b.events[i].depth == 0.0
+    return pressed and abs(b.events[i].length) < SHORT * f.width
+
+
+@jit
+def grown(f, e, begin, r):
+    """The growth of coordinate r in the flight after an event, of all of its motion, not formed as a difference.
+
+    begin : e^{i phi} at its beginning
+    """
     n, turned, power, total = f.A.shape[0], f.numbers[OMEGA] * e.length, 1.0, 0.0
     for k in range(1, ORDER + 1):
         power *= e.length
         for j in range(n + 1):
             total += f.series[k, r, j] * power * e.after[j]
-    swing = e.turn * cmath.exp(0.5j * turned) * complex(0.0, 2.0 * math.sin(0.5 * turned))
+    swing = begin * cmath.exp(0.5j * turned) * complex(0.0, 2.0 * math.sin(0.5 * turned))
     return total + (f.Z[r] * swing).real
 
 
@@ -185,8 +198,15 @@ def fly_through(f, c, place, b):
     for i in range(K - 1):
         if is_short(f, c, b, i):
             e, following = b.events[i], b.events[i + 1]
-            e.defect[0] = following.gap - e.gap - grown(f, e, 0)
-            e.defect[n // 2] = following.motion[0] - e.motion[0] - place.x[i, n + 1] - grown(f, e, n // 2)
+            e.defect[0] = following.gap - e.gap - grown(f, e, e.turn, 0)
+            e.defect[n // 2] = following.motion[0] - e.motion[0] - place.x[i, n + 1] - grown(f, e, e.turn, n // 2)
+    if c.compliant is not None:
+        for i in range(K):
+            if hardly_leaves(f, c, b, i):
+                e, j = b.events[i], i + 1 if i + 1 < K else 0
+                gap = b.events[j].gap - f.numbers[HIGH if c.sides[j] > 0 else LOW]
+                rise = grown(f, e, e.turn * cmath.exp(1j * place.x[i, n + 1]), 0)
+                e.defect[0] = (gap if j > 0 else c.sigma * gap) - rise
 
 
 @jit
