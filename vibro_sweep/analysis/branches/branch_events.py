@@ -32,8 +32,8 @@ def ends_between(curve: SolutionCurve, bounds, a: Point, b: Point) -> list[Event
         if (b.value - boundary) * side > 0:
             events.append(Event("boundary", _beyond(boundary, side, a), boundary=boundary))
     for i in range(curve.K):
-        if b.solution.pushes[i] <= 0:
-            test = _positive_at(a, lambda point, i=i: point.solution.pushes[i])
+        if b.presses[i] <= 0:
+            test = _positive_at(a, lambda point, i=i: point.presses[i])
             events.append(Event("graze", test, impact=i))
         if a.releases[i] > 0 >= b.releases[i]:
             events.append(Event("sticking", lambda point, i=i: point.releases[i]))
@@ -41,7 +41,7 @@ def ends_between(curve: SolutionCurve, bounds, a: Point, b: Point) -> list[Event
         events.append(SPLIT if np.any(q.is_compliant(curve.orbit.sides)) else Event("sticking", _stays))
     if a.relaxed > 0 >= b.relaxed:
         events.append(Event("unrelaxed", lambda point: min(point.relaxed, 1.0)))
-    if b.stop_distance <= 0 < a.stop_distance or _passes(b):
+    if b.stop_distance <= 0 < a.stop_distance or passes_stop(b):
         most = 2 * abs(a.stop_distance) if math.isfinite(a.stop_distance) else 1.0
         test = _positive_at(a, lambda point: min(point.stop_distance, most))
         events.append(Event("graze", test, touches=True))
@@ -56,7 +56,7 @@ def first_end(curve: SolutionCurve, events: list[Event], a: Point, b: Point) -> 
     """
     located = []
     for event in sorted(events, key=lambda event: event.touches):
-        if event.touches and located and not _passes(earliest(located).place):
+        if event.touches and located and not passes_stop(earliest(located).place):
             break
         found = locate(curve, event, a, b)
         if found is not None:
@@ -72,7 +72,7 @@ def earliest(located: list[LocatedEvent]) -> LocatedEvent:
     return min(same, key=lambda found: (found.event.impact is None, found.share))
 
 
-def _passes(point: Point) -> bool:
+def passes_stop(point: Point) -> bool:
     """Whether a flight is beyond its stop by more than rounding."""
     return bool(point.stop_distance < -PASSED * point.solution.size_of_gap)
 
@@ -100,6 +100,8 @@ def locate(curve: SolutionCurve, event: Event, a: Point, b: Point) -> LocatedEve
         return event.test(point) / size
 
     found = root(curve, a, b, test)
+    if found is None and event.impact is not None:
+        found = _vanishing(curve, event.impact, a, b)
     if found is None:
         return None
     share, point = found
@@ -111,6 +113,16 @@ def locate(curve: SolutionCurve, event: Event, a: Point, b: Point) -> LocatedEve
     else:
         error = error_of(curve, a, b, test, share, point)
     return None if error is None else LocatedEvent(event, along(a, point) / along(a, b), point, error)
+
+
+def _vanishing(curve: SolutionCurve, impact: int, a: Point, b: Point) -> tuple[float, Point] | None:
+    """As of `root`, with the impact held at 0: just beside it rounding can keep Newton's method from an end."""
+    before, behind = a.presses[impact], b.presses[impact]
+    guess = curve.between(a, b, before / (before - behind))
+    guess.jumps[impact] = 0.0
+    point = curve.correct(guess, np.eye(1, 2 * curve.K + 3, curve.K + impact)[0])
+    inside = point is not None and 0 <= along(a, point) <= along(a, b)
+    return (along(a, point) / along(a, b), point) if inside else None
 
 
 def tests_between(curve: SolutionCurve, a: Point, b: Point, scaled: bool = False) -> list[tuple[str, Test]]:
@@ -141,7 +153,7 @@ def is_outside(curve: SolutionCurve, bounds, point: Point) -> bool:
     """Whether a point lies beyond an end of its branch by more than rounding."""
     s = point.solution
     slow = -NO_SPEED * s.family.linear.omega * s.size_of_gap
-    return not bounds[0] <= point.value <= bounds[1] or _passes(point) or bool(np.any(s.pushes < slow))
+    return not bounds[0] <= point.value <= bounds[1] or passes_stop(point) or bool(np.any(s.pushes < slow))
 
 
 def _positive_at(inside: Point, value):

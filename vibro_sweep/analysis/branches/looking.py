@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.branch_events import is_outside, tests_between
+from vibro_sweep.analysis.branches.branch_events import is_outside, passes_stop, tests_between
 from vibro_sweep.analysis.branches.crossings import counts_of, explained, is_torus, stands_alone
 from vibro_sweep.analysis.continuation.events import LocatedEvent, Test
 from vibro_sweep.analysis.continuation.point import Point, along
@@ -16,6 +16,8 @@ from vibro_sweep.model.bifurcations import BY_NAME
 SHARES = (0.5, 0.4, 0.6, 0.3)  # of the way to the next point, where the first lies on a bifurcation by chance
 APART = 1e-9  # share of a step: bifurcations that are nearer to each other are not separated
 CLOSE = 1e-6  # share of a step: so near to an end of the branch
+NEARER = 1e-3  # times: so much the distance from a stop has fallen where it may have been zero on the way
+ON_THE_WAY = (0.5, 0.9, 0.99)  # shares of a step
 MOST_LOOKS = 8  # for one extremum
 
 
@@ -48,7 +50,7 @@ def hidden_between(
         if not _are_all(curve, x, y, inside):
             return y if y is not b else x if x is not a else _middle(curve, a, b, found)
     places = [a, *(one.place for one in found), b]
-    return _divided(curve, places, found) or _touched(curve, beside, places, found)
+    return _divided(curve, places, found) or _touched(curve, beside, places, found) or _beyond_stop(curve, a, b)
 
 
 def _are_all(curve: SolutionCurve, a: Point, b: Point, found: list[LocatedEvent]) -> bool:
@@ -116,6 +118,15 @@ def _touched(curve: SolutionCurve, beside: tuple, places: list[Point], found: li
             if point is not None:
                 return point
     return None
+
+
+def _beyond_stop(curve: SolutionCurve, a: Point, b: Point) -> Point | None:
+    """A point beyond a stop on the way to one where the motion touches it once more, as where an orbit of several
+    periods meets the graze of one of a single period: the distance may have been zero before."""
+    if not b.stop_distance < NEARER * a.stop_distance < math.inf:
+        return None
+    points = (curve.step(a, share * along(a, b), b) for share in ON_THE_WAY)
+    return next((point for point in points if point is not None and passes_stop(point)), None)
 
 
 def _least(a: Point, b: Point, i: int) -> float:

@@ -70,6 +70,13 @@ class Point(Place):
         return self.curve.releases(self)
 
     @property
+    def presses(self) -> np.ndarray:
+        """(K,) what vanishes at a graze: the size of an impulse, negative for one that pulls, the length of a contact."""
+        c = self.curve.problem
+        contacts = c.rests & self.curve.orbit.family.linear.is_compliant(c.sides)
+        return np.where(contacts, self.jumps, self.solution.pushes)
+
+    @property
     def stays(self) -> float:
         """The least of what makes a rest: its length, the acceleration into the stop and the speed before it."""
         c, q = self.curve.problem, self.curve.orbit.family.linear

@@ -6,7 +6,7 @@ import numpy as np
 
 from vibro_sweep.engine.continuation.chatter_sum import NEXT
 from vibro_sweep.engine.continuation.flight_tables import polynomial
-from vibro_sweep.engine.continuation.lasting import forced, hold_of, is_contact
+from vibro_sweep.engine.continuation.lasting import forced, hold_of, is_contact, speed_of_release
 from vibro_sweep.engine.continuation.moving_flow import HIGH, LOW, OMEGA, ONE_PLUS_R_HIGH, ONE_PLUS_R_LOW
 from vibro_sweep.engine.continuation.problem import GRAZE, STICK
 from vibro_sweep.engine.continuation.relaxation import time_to_spare
@@ -107,6 +107,8 @@ def look(f, c, place, b):
                     k == 0 and f.numbers[one_plus_R] == 1.0 and not c.rests[i]
                 ):  # not even rounding is left of the velocity
                     work.cell[1] = 0.0
+                if c.compliant is not None and k == 0 and b.events[i].depth != 0.0:
+                    work.cell[1] = speed_of_release(f, c.sides[i], b.events[i].depth)
                 if extremes_of_cell(work.cell, width, f.numbers[LOW], f.numbers[HIGH], nearest, work.waiting):
                     nearest[1] = begin + omega * (nearest[1] + k * f.width)
             if k < cells:

@@ -46,6 +46,14 @@ def corner_of(f, c, i):
 
 
 @jit
+def speed_of_release(f, side, depth):
+    """The speed with which a contact ends by its force, at this depth: towards the other stop, whatever rounding is
+    left of the motion's."""
+    law = law_at(f, side)
+    return -side * (f.values[law] * depth + f.values[law + 2]) / f.values[law + 1]
+
+
+@jit
 def forced(b):
     """How many contacts end by their force, before the gap is at its stop. Where this changes the lengths of contacts
     have a corner, and the motion is smooth."""
