@@ -50,7 +50,11 @@ def hidden_between(
         if not _are_all(curve, x, y, inside):
             return y if y is not b else x if x is not a else _middle(curve, a, b, found)
     places = [a, *(one.place for one in found), b]
-    return _divided(curve, places, found) or _touched(curve, beside, places, found) or _beyond_stop(curve, a, b)
+    for look in (_divided, _touched, _turned):
+        point = look(curve, places, found, beside)
+        if point is not None:
+            return point
+    return _beyond_stop(curve, a, b)
 
 
 def _are_all(curve: SolutionCurve, a: Point, b: Point, found: list[LocatedEvent]) -> bool:
@@ -77,7 +81,7 @@ def _middle(curve: SolutionCurve, a: Point, b: Point, found: list[LocatedEvent])
     return None
 
 
-def _divided(curve: SolutionCurve, places: list[Point], found: list[LocatedEvent]) -> Point | None:
+def _divided(curve: SolutionCurve, places: list[Point], found: list[LocatedEvent], beside: tuple) -> Point | None:
     """A point beside a bifurcation at which another test has the other sign than before and behind it."""
     for one, a, c, b in zip(found, places, places[1:], places[2:], strict=False):
         for kind, test in tests_between(curve, a, b, scaled=True):
@@ -96,7 +100,7 @@ def _with_sign(curve: SolutionCurve, test: Test, c: Point, b: Point) -> Point | 
     return None
 
 
-def _touched(curve: SolutionCurve, beside: tuple, places: list[Point], found: list[LocatedEvent]) -> Point | None:
+def _touched(curve: SolutionCurve, places: list[Point], found: list[LocatedEvent], beside: tuple) -> Point | None:
     """A point between the first and the last of `places` at which a test has changed its sign, to change it again."""
     a, b = places[0], places[-1]
     K, pushing = curve.K, (a.solution.pushes > 0) & ~curve.problem.rests
@@ -120,6 +124,19 @@ def _touched(curve: SolutionCurve, beside: tuple, places: list[Point], found: li
     return None
 
 
+def _turned(curve: SolutionCurve, places: list[Point], found: list[LocatedEvent], beside: tuple) -> Point | None:
+    """A point at which the parameter goes the other way than at both ends, as the cubic through them says."""
+    a, b = places[0], places[-1]
+    if a.rate * b.rate <= 0 or any(one.event.type == "fold" for one in found):
+        return None
+    slope = _slope_between(a, b, 2 * curve.K)
+    (at,) = slope.deriv().roots if slope.order == 2 else (math.nan,)
+    if not (0 < at < 1 and slope(at) * a.rate < 0):
+        return None
+    point = curve.step(a, along(a, b) * at)
+    return point if point is not None and point.rate * a.rate < 0 else None
+
+
 def _beyond_stop(curve: SolutionCurve, a: Point, b: Point) -> Point | None:
     """A point beyond a stop on the way to one where the motion touches it once more, as where an orbit of several
     periods meets the graze of one of a single period: the distance may have been zero before."""
@@ -131,13 +148,17 @@ def _beyond_stop(curve: SolutionCurve, a: Point, b: Point) -> Point | None:
 
 def _least(a: Point, b: Point, i: int) -> float:
     """The share between two points at which the cubic of one unknown has its extremum; its slopes differ in sign."""
+    roots = _slope_between(a, b, i).roots
+    inside = [root.real for root in roots if abs(root.imag) < 1e-12 and 0 < root.real < 1]
+    return min(inside, default=0.5, key=lambda root: abs(root - 0.5))
+
+
+def _slope_between(a: Point, b: Point, i: int) -> np.poly1d:
+    """The slope of the cubic of one unknown, over the share of the way from a to b."""
     change = a.curve.difference(a, b)
     length, rise = float(np.linalg.norm(change)), change[i]
     p, q = a.direction[i] * length, b.direction[i] * length
-    # slope of the cubic: p + 2 (3 rise - 2 p - q) s + 3 (p + q - 2 rise) s^2
-    roots = np.roots([3 * (p + q - 2 * rise), 2 * (3 * rise - 2 * p - q), p])
-    inside = [root.real for root in roots if abs(root.imag) < 1e-12 and 0 < root.real < 1]
-    return min(inside, default=0.5, key=lambda root: abs(root - 0.5))
+    return np.poly1d([3 * (p + q - 2 * rise), 2 * (3 * rise - 2 * p - q), p])
 
 
 def _beyond_extremum(curve: SolutionCurve, test: Test, a: Point, b: Point, triple) -> Point | None:

@@ -11,6 +11,8 @@ from vibro_sweep.engine.continuation.moving_flow import HIGH, LOW, law_at
 from vibro_sweep.engine.continuation.problem import GRAZE
 from vibro_sweep.engine.simd.jit import jit
 
+OUTWARDS = 1e-6  # speed, in units of a branch: more than what is left of it beside a graze
+
 
 @jit
 def is_contact(compliant, side):
@@ -43,6 +45,17 @@ def is_watched(f, c, i):
 def corner_of(f, c, i):
     """The jump of the velocity of event i by its depth, where it is watched: the least contact that ends by force."""
     return f.values[law_at(f, c.sides[i]) + 1] if f.by_force > 0 and is_watched(f, c, i) else 0.0
+
+
+@jit
+def contacts_begin(c, place, b):
+    """Whether the gap moves into its stop where contacts begin, but for rounding."""
+    if c.compliant is not None:
+        for i in range(len(place.x)):
+            pressed = c.rests[i] and is_contact(c.compliant, c.sides[i]) and place.x[i, -1] > 0.0
+            if pressed and c.sides[i] * b.events[i].motion[0] < -OUTWARDS:
+                return False
+    return True
 
 
 @jit

@@ -11,7 +11,7 @@ import numpy as np
 
 from vibro_sweep.engine.continuation.corrector import assemble, in_order, move, newton_step, put_plane
 from vibro_sweep.engine.continuation.curve_tests import overflows
-from vibro_sweep.engine.continuation.lasting import forced
+from vibro_sweep.engine.continuation.lasting import contacts_begin, forced
 from vibro_sweep.engine.continuation.looking_at import examine, happens, refresh, touches
 from vibro_sweep.engine.continuation.moving_flow import OMEGA, move_exactly, move_to, take_shift
 from vibro_sweep.engine.continuation.path import (
@@ -89,6 +89,8 @@ def correct(f, c, place, row, b, most, enough):
         if not change <= 1.0 or not in_order(f, c, place):
             return 0
         if change < enough or (change < 1e-7 and change > 0.3 * before):
+            if not contacts_begin(c, place, b):  # that of another branch
+                return 0
             place.tests[TEST.residual] = change
             normalise(c, place)
             return count
