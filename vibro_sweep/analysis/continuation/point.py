@@ -71,7 +71,7 @@ class Point(Place):
 
     @property
     def presses(self) -> np.ndarray:
-        """(K,) what vanishes at a graze: the size of an impulse, negative for one that pulls, the length of a contact."""
+        """(K,) sizes of impulses, negative for one that pulls, and lengths of contacts: at a graze one of them is 0."""
         c = self.curve.problem
         contacts = c.rests & self.curve.orbit.family.linear.is_compliant(c.sides)
         return np.where(contacts, self.jumps, self.solution.pushes)
