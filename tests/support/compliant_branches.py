@@ -45,12 +45,13 @@ def unexplained(branch) -> list[str]:
     mu = branch.points.multiplier_re.values + 1j * branch.points.multiplier_im.values
     sure = np.all(np.abs(np.abs(mu) - 1) > ON_CIRCLE, axis=1)
     outside, found = np.sum(np.abs(mu) > 1, axis=1), []
-    places = arrays["special_point"].tolist()
+    at_points = [(one, at) for one, at in zip(branch.special, arrays["special_point"].tolist(), strict=True) if at >= 0]
+    places = [at for _, at in at_points]  # without the one where a closed branch comes back to its first point
     for first, last in zip([-1, *places], [*places, len(mu)], strict=True):
         between = np.flatnonzero(sure[first + 1 : last]) + first + 1
         if len(between) and np.ptp(outside[between]) > 0:
             found.append(f"unstable {np.unique(outside[between])} between points {first} and {last}")
-    for one, at in zip(branch.special, places, strict=True):
+    for one, at in at_points:
         before, behind = np.flatnonzero(sure[:at]), np.flatnonzero(sure[at + 1 :]) + at + 1
         inner = (
             len(before)
