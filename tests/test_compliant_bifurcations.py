@@ -151,6 +151,30 @@ def test_two_contacts_become_one(numbers, bounds, tmp_path):
         compare(end)
 
 
+@pytest.mark.parametrize("of, names, bounds", [
+    ("fold", ("omega", "F"), ((0.3, 3), (0.05, 1.5))),
+    *slow_cases(("graze", ("omega", "F"), ((0.3, 3), (0.05, 1.5)))),
+])  # fmt: skip
+def test_points_of_curves_are_orbits_with_their_multipliers(of, names, bounds):
+    """A simulation from the state of a point comes back; where the orbit folds it has the multiplier 1, and where it
+    grazes those of the motion without the contact have the product exp(-2 zeta T)."""
+    start = next(one for one in branch_of("one mass").special if one.type == of)
+    points, compared = vs.bifurcation_curve(start, names, bounds).points, 0
+    multipliers, T = points.multiplier_re.values + 1j * points.multiplier_im.values, 2 * np.pi / points.omega.values
+    for i in np.flatnonzero(~points.virtual.values)[::10]:
+        system = start.orbit.system.replace(**{name: float(points[name][i]) for name in names})
+        state = np.array([float(points[name][i]) for name in ("x1", "v1")])
+        period = start.orbit.period
+        back = vs.simulate(system, state, period).section[-1]
+        assert np.abs(back - state).max() < 1e-9
+        if of == "fold":
+            assert np.abs(multipliers[i] - 1).min() < 1e-6
+        else:
+            assert abs(np.prod(multipliers[i]) - np.exp(-2 * system.numbers["zeta"] * period * T[i])) < 1e-12
+        compared += 1
+    assert compared >= 5
+
+
 def test_windows_of_one_elastic_stop():
     """Every window has a label at both ends, and the motion there is stable inside and gone or unstable beyond."""
     system = one_mass(zeta=0.01, base=True, F=0.9 / 1.26, tau=np.pi / 2)

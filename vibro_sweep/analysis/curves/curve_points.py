@@ -1,14 +1,17 @@
 """The points of a bifurcation curve as a Dataset."""
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from vibro_sweep.analysis.branches import branch_points
+from vibro_sweep.analysis.branches.special import bare
 from vibro_sweep.analysis.continuation.recorded import Rows
 from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve
 from vibro_sweep.analysis.periodic.motion_between import multipliers_of
+from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.engine.continuation.curve_tests import TOUCHING
 from vibro_sweep.engine.continuation.problem import FLIP, FOLD, GRAZE, STICK, TORUS
 from vibro_sweep.engine.continuation.workspace import THETA
@@ -40,13 +43,20 @@ def dataset(curve: SolutionCurve, rows: Rows) -> "xarray.Dataset":
     multipliers, shifts, states = [], [], []
     oscillators = [curve.oscillators.at(p).linear for p in rows.p]
     flows = _flows(oscillators) if kind != STICK else oscillators
-    for q, f, t, D, motion, h in zip(oscillators, flows, rows.t, rows.D, rows.motion, rows.state, strict=True):
+    for q, f, p, t, D, ends, motion, h in zip(
+        oscillators, flows, rows.p, rows.t, rows.D, rows.ends, rows.motion, rows.state, strict=True
+    ):
         contacts = np.column_stack([q.stop(sides), 1 + q.restitution(sides)])[others]
         P, u = forcing_period(q) / 2 * s.half_periods, np.concatenate([t[others], D[others]])
         shifts.append((curve.tau - q.tau) / q.omega)
         if kind == STICK:
             multipliers.append(np.full(2 * len(q.normal), np.nan, complex))
             states.append(np.full(2 * len(q.normal), np.nan))
+            continue
+        if s.rests:
+            values = _with_contacts(curve, p, t + shifts[-1], D, ends + shifts[-1])
+            multipliers.append(values[0])
+            states.append(values[1])
             continue
         multipliers.append(multipliers_of(f, s.sigma, P, contacts, u, motion[others]))
         states.append(_state(q, f, s.sigma, P, t + shifts[-1], D, h))
@@ -85,6 +95,13 @@ def dataset_from_file(arrays: dict[str, np.ndarray], names: tuple[str, str]) -> 
         one = one.isel(impact=slice(one.sizes["impact"] // 2))
     more = {names[1]: ("point", arrays["value"][:, 1]), "virtual": ("point", arrays["status"] != 0)}
     return xarray.Dataset({**one, **more}).drop_vars("min_impact_speed")
+
+
+def _with_contacts(curve: SolutionCurve, p, t, D, ends) -> tuple[np.ndarray, np.ndarray]:
+    """Multipliers and state (2N,) at t = 0 of a point whose orbit has contacts with compliant stops."""
+    point = replace(curve.orbit, family=curve.oscillators.at(p), u=np.concatenate([t, D, ends]))
+    own = bare(point, curve.problem.index) if curve.problem.kind == GRAZE else point
+    return own.multipliers, PeriodicOrbit(point.family, "ok", point, (0, 0)).state
 
 
 def _state(q: Linear, f: Flow, sigma: int, P: float, t: np.ndarray, D: np.ndarray, h: np.ndarray) -> np.ndarray:
