@@ -154,6 +154,8 @@ def distance_in_digits(special, pulled=False) -> tuple[np.ndarray, float]:
     d, family = described(special), family_of(special.orbit.system)
     slopes = [family.derivative(name)._replace(tau=0.0) for name in special.parameters]
     conditions = CONDITIONS[special.type]
+    if special.type == "split" and len(slopes) > 1:  # the end of a curve
+        conditions = CONDITIONS[special.curve]
     exact = Bifurcation(d.q, slopes, *d.of, conditions, d.touched, ANGLES.get(special.type), pulled)
     off, change = exact.solve(*d.guess)
     return np.array(off), change

@@ -1,8 +1,11 @@
-"""The end of a branch at which two contacts with one stop become one: the mass does not leave the stop between them.
+"""The end of a branch, or a curve, at which two contacts with one stop become one: the mass does not leave the stop
+between them.
 
 The branch of the orbits with one contact goes on smoothly, as far as its equations tell, beyond the place where the
 mass comes back to the stop within the contact. So that place is looked for along it.
 """
+
+from dataclasses import replace
 
 import numpy as np
 from scipy.optimize import brentq
@@ -11,34 +14,38 @@ from vibro_sweep.analysis.branches.branch_events import SPLIT, locate
 from vibro_sweep.analysis.continuation.events import LocatedEvent
 from vibro_sweep.analysis.continuation.first_point import first_place
 from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve
-from vibro_sweep.analysis.continuation.starting_orbit import Start
 from vibro_sweep.analysis.periodic.joined_contacts import flights_between, joined, parted, turned
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution
+from vibro_sweep.engine.continuation.problem import GRAZE
 
 SHORT = 1e-3  # of 1/omega: the flight between two contacts that are about to be one
 STEPS = np.geomspace(1e-9, 1e-2, 15)  # along the branch of orbits with one contact
 BESIDE = 1e-3  # of 1/omega, about the time at which the mass is at rest
 
 
-def joined_contacts(curve: SolutionCurve, s: Solution) -> tuple[LocatedEvent, Solution] | None:
-    """Where two contacts of an orbit at the end of its branch become one, and the orbit there, with both.
+def joined_contacts(curve: SolutionCurve, s: Solution, theta: float = 0.0) -> tuple[LocatedEvent, Solution] | None:
+    """Where two contacts of an orbit at the end of its branch or curve become one, and the orbit there, with both.
 
-    None where it has no contacts that are about to be one.
+    theta : of a Neimark-Sacker curve. None where it has no contacts that are about to be one.
     """
-    apart = flights_between(s)
+    apart, start, K = flights_between(s), curve.start, s.K
     if not s.family.linear.omega * apart.min(initial=np.inf) < SHORT:
         return None
     index = int(apart.argmin())
-    near = s.ends[s.rests.index(index)] + apart[index] / 2
-    start = Start("orbit", joined(s, index))
-    one = SolutionCurve(start, curve.names, curve.bounds[:1], curve.unit[:1])
+    if start.kind == GRAZE and start.index in (index, (index + 1) % K):
+        return None
+    near, wraps = s.ends[s.rests.index(index)] + apart[index] / 2, index == K - 1
+    grazing = start.index - (start.index > index and not wraps)
+    start = replace(start, solution=joined(s, index), index=grazing, theta=theta)
+    count = len(curve.names)
+    one = SolutionCurve(start, curve.names, curve.bounds[:count], curve.unit[:count])
     first = first_place(one)
     for step in [] if first is None else (sign * length for length in STEPS for sign in (1, -1)):
         other = one.step(first, step)
         found = other and locate(one, SPLIT, first, other)
         if found:
-            return found, _with_both(found.place.solution, index, near, wraps=index == s.K - 1)
+            return found, _with_both(found.place.solution, index, near, wraps)
     return None
 
 

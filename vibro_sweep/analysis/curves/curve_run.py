@@ -1,12 +1,13 @@
 """A run along a bifurcation curve in one direction: compiled steps, what they pass, and where the curve ends."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from vibro_sweep.analysis.branches.branch_run import stop_and_impact
 from vibro_sweep.analysis.branches.special import SpecialPoint, bare
+from vibro_sweep.analysis.branches.split_contacts import joined_contacts
 from vibro_sweep.analysis.continuation.chatter import chatter_at, with_impacts, written_out
 from vibro_sweep.analysis.continuation.events import Event
 from vibro_sweep.analysis.continuation.recorded import Rows, join, rows_of
@@ -21,6 +22,7 @@ from vibro_sweep.analysis.curves.curve_events import (
 )
 from vibro_sweep.analysis.curves.ends import End, birth, birth_near, in_full, just_before, strong_resonance
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit, orbit_of
+from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation import stepper
 from vibro_sweep.engine.continuation.curve_tests import NEAR_STRONG
 from vibro_sweep.engine.continuation.moving_flow import OMEGA
@@ -121,7 +123,7 @@ class CurveRun:
         end = birth_near(w, a) if w.problem.repeats or w.problem.mirrors else None
         if end is not None:
             self._end(end)
-        else:
+        elif not self._join_contacts(a):
             self.special.append(self._at("failed", a, np.nan))
 
     def _write_out(self, a: Place) -> bool:
@@ -239,22 +241,27 @@ class CurveRun:
         other, found = end.curve, end.found
         w, solution, p = self.curve, in_full(self.curve, end), found.place.p.copy()
         self.special.append(self._at(found.event.type, found.place, found.error, found.event, other))
-        q = solution.family.linear
         if w.problem.kind == TORUS:
             p[THETA] = round(self.points.p[-1, THETA] / np.pi) * np.pi
-        t = solution.times + (q.tau - w.tau) / q.omega
-        motion = solution.motion[:, :2]
-        h = solution.states[0, : w.n] - steady_motion(q, solution.times[0])
-        values = (
-            p,
-            t,
-            solution.jumps,
-            solution.ends,
-            motion,
-            np.array(solution.stop_distance),
-            np.array(solution.change),
-            h,
-        )
+        self._add_solution(p, solution)
+
+    def _join_contacts(self, a: Place) -> bool:
+        """End where two contacts become one beside a. False: there are none."""
+        found = joined_contacts(self.curve, self.curve.solution(a), float(a.p[THETA]))
+        if found is None:
+            return False
+        (event, _, place, error), both = found
+        self._add_solution(place.p.copy(), both)
+        point = self._at("split", place, error, event, place.curve)
+        self.special.append(replace(point, orbit=orbit_of(point.orbit.system, both)))
+        return True
+
+    def _add_solution(self, p: np.ndarray, s: Solution) -> None:
+        """Record an orbit that is not of this curve."""
+        w, q = self.curve, s.family.linear
+        t, motion = s.times + (q.tau - w.tau) / q.omega, s.motion[:, :2]
+        h = s.states[0, : w.n] - steady_motion(q, s.times[0])
+        values = p, t, s.jumps, s.ends, motion, np.array(s.stop_distance), np.array(s.change), h
         self.rows.append(Rows(*(value[None].copy() for value in values)))
 
     def _at(self, of_type, place: Place, error: float, event: Event | None = None, curve=None) -> CurvePoint:
