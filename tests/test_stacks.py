@@ -7,6 +7,7 @@ from support.any_oscillators import positive
 
 import vibro_sweep as vs
 from vibro_sweep.analysis.single.tables import table_of
+from vibro_sweep.engine.any_points import kind_of
 from vibro_sweep.model.grid import linears
 
 SWEPT = {
@@ -77,3 +78,19 @@ def test_where_a_state_is_measured_from_does_not_depend_on_other_points():
     table, _ = table_of(ball, {"b": np.array([1.0, 5.0])}, frames=False)
     assert table["origin"][:, 0].tolist() == [3.0, 0.0]
     assert table["stops"][:, :2].tolist() == [[-1.0, 1.0], [-2.0, 8.0]]
+
+
+def test_which_oscillators_share_kernels():
+    """Those with as many masses, wherever the contact is, unless a stop is compliant."""
+    numbers = dict(M=np.eye(2), K=np.eye(2), C=0.1 * np.eye(2), contact_normal=[1, 0], omega=0.8, b=1)
+    stops = dict(R=0.8), dict(R=0.8, contact_normal=[1, -1]), dict(R=0.8, M=[[2, 0.1], [0.1, 3]]), dict(k_stop=29)
+    wall, between, coupled, compliant = (kind_of(vs.Oscillator(**numbers | stop).linear) for stop in stops)
+    assert wall == between == coupled != compliant
+
+
+def test_a_constant_force_on_one_mass_needs_no_kernels_of_its_own():
+    kinds = [
+        kind_of(vs.Oscillator.named("one_mass", k=1, zeta=0, F=1, constant=constant, omega=0.8, b=1, R=0.8).linear)
+        for constant in (0.0, -0.4)
+    ]
+    assert kinds[0] == kinds[1]

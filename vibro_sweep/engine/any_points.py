@@ -33,9 +33,13 @@ APART = 8.0  # a rate over that of the force from which on tables are computed i
 
 
 def kind_of(q: Linear) -> Kind:
-    """The kind for which kernels must be compiled: oscillators with the same number of masses."""
-    constant = bool(np.any(q.constant) or np.any(origin_of(q)))
-    return Kind(q.normal.shape[-1], constant, False, bool(np.all(is_own(q))), bool(np.any(q.compliant)))
+    """The kind for which kernels must be compiled: oscillators with the same number of masses.
+
+    With one mass a constant force takes no time, also where it is 0: kernels with room for it serve both.
+    """
+    masses = q.normal.shape[-1]
+    constant = masses == 1 or bool(np.any(q.constant) or np.any(origin_of(q)))
+    return Kind(masses, constant, False, bool(np.any(q.compliant)))
 
 
 def any_points(q: Linear, kind: Kind, frames: bool = True) -> np.ndarray:

@@ -74,7 +74,7 @@ def new_workspace(plan: Plan, cells: int, samples: int, orbits: int = LANES, kin
         np.empty((LANES, 3, states)),
         np.empty((states, states)),
         series.new_workspace() if kind.paper else None,
-        None if kind.paper else general_tables.new_workspace(kind.masses, kind.constant, kind.own),
+        None if kind.paper else general_tables.new_workspace(kind.masses, kind.constant),
     )
 
 

@@ -14,9 +14,8 @@ class Kind(NamedTuple):
     """The kind of oscillators for which kernels are compiled."""
 
     masses: int
-    constant: bool  # whether a constant force acts
+    constant: bool  # whether there is room for a constant force
     paper: bool  # the paper's oscillator, with tables from its modes
-    own: bool = True  # all in coordinates of the masses themselves, of which an impulse moves the first alone
     compliant: bool = False  # whether some stops are (engine/compliant/)
 
 

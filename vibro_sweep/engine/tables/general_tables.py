@@ -20,16 +20,16 @@ class Workspace(NamedTuple):
     A: np.ndarray  # (inputs, inputs)
     row: np.ndarray  # (inputs,)
     turned: np.ndarray  # (2, 2 N + 3)
-    twofold: np.ndarray | None  # (4, 2, inputs, inputs); None where no point needs it, and kernels leave it out
+    twofold: np.ndarray  # (4, 2, inputs, inputs)
 
 
-def new_workspace(masses: int, constant: bool, own: bool = True) -> Workspace:
+def new_workspace(masses: int, constant: bool) -> Workspace:
     inputs = inputs_of(masses, constant)
     return Workspace(
         np.empty((inputs, inputs)),
         np.empty(inputs),
         np.empty((2, 2 * masses + 3)),
-        None if own else np.empty((4, 2, inputs, inputs)),
+        np.empty((4, 2, inputs, inputs)),
     )
 
 

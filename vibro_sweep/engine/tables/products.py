@@ -58,21 +58,19 @@ def join(a, b, out, states, inputs, angle):
 
 @jit
 def fill_products(q, nodes, point, room):
-    """E at all nodes, and what each force does from rest. room: scratch of twofold.py, or None.
+    """E at all nodes, and what each force does from rest. room: scratch of twofold.py.
 
     The flight to node k = rest + step, with step its lowest binary digit, is one to `rest` and one of `step` cells:
     rounding errors grow with the number of digits of k, not with k.
     """
-    states, inputs, cells, doubled = 2 * len(q.series), len(q.force), q.cells, False
+    states, inputs, cells = 2 * len(q.series), len(q.force), q.cells
     clear(nodes[0].E[:])
-    if room is not None:
-        doubled = point.apart
-        if doubled:
-            fill_doubled(q, nodes, point, room)
-    if not doubled:
+    if point.apart:
+        fill_doubled(q, nodes, point, room)
+    else:
         fill_first(q, nodes)
     for k in range(2, cells + 1):
-        if doubled and k & (k - 1) == 0:
+        if point.apart and k & (k - 1) == 0:
             continue
         step = k & -k if k & (k - 1) else k // 2
         clear(nodes[k].E[:])
