@@ -313,7 +313,7 @@ def test_a_page_that_does_not_read_costs_others_nothing(program, page, view):
     answers(page, "sweep", 2, view=view)
     before = memory(program)
     large = view | {"columns": 1000, "transient": 10, "record": 1000, "low": 4.4, "high": 4.6}
-    with program.socket(max_queue=1) as silent:
+    with program.socket(max_queue=1, close_timeout=0.1) as silent:  # closing, it would wait for what it does not read
         for seq in range(1000):
             ask(silent, "sweep", seq, view=large)
         time.sleep(1)
