@@ -67,7 +67,7 @@ def draws(made, share: int):
         yield name, argument, "valid", call.given(choose.choice(call.valid.get(argument, [{}]))), call
 
 
-@pytest.mark.parametrize("share", [50, *slow_cases(10), pytest.param(1, marks=pytest.mark.soak)])
+@pytest.mark.parametrize("share", [150, *slow_cases(10), pytest.param(1, marks=pytest.mark.soak)])
 @pytest.mark.filterwarnings("ignore::DeprecationWarning")
 def test_any_value_for_any_argument(made, share):
     outcomes, files, slowest = Counter(), sorted(os.listdir()), (0.0, "")

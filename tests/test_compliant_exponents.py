@@ -22,9 +22,8 @@ def hold(reports):
         assert np.all(one.multiplier_errors <= WITHIN * one.multipliers_stated), one
 
 
-@pytest.mark.parametrize("seed", [0, 1])
-def test_exponents_against_eighty_digits(seed):
-    report = compliant_exponents.compared(seed)
+def test_exponents_of_an_orbit_against_eighty_digits():
+    report = compliant_exponents.compared(0)
     assert report.period
     hold([report])
 

@@ -20,7 +20,7 @@ def data():
 
 @pytest.fixture
 def few(monkeypatch):
-    monkeypatch.setattr(film, "FRAMES", 5)
+    monkeypatch.setattr(film, "FRAMES", 2)
 
 
 def test_a_frame_shows_the_masses_where_they_are(data):
@@ -47,7 +47,7 @@ def test_files(data, tmp_path, few, suffix):
         vs.plot(data, at={"b": 4.0}, dpi=60, output=place)
     if suffix == ".gif":
         with Image.open(place) as moving:
-            assert moving.n_frames == 5 and moving.size[0] > 400
+            assert moving.n_frames == 2 and moving.size[0] > 400
     place.write_bytes(place.read_bytes() + b"x")
     with pytest.raises(vs.PlotError, match="exists"):
         vs.plot(data, output=place)
