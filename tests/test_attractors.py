@@ -171,6 +171,7 @@ def test_too_short_a_transient_is_said(tmp_path):
     assert np.all(data["period"] == 1) and np.all(data["attractor"] == 1)
 
 
+@pytest.mark.slow
 def test_an_orbit_that_arrives_within_the_record_has_not_settled(tmp_path):
     """At b = 6.7524 chaos ends in free motion after some 10^4 periods: such an orbit is on neither, and is not a
     third."""

@@ -179,6 +179,7 @@ def test_variables_that_a_picture_can_show(file, variable, tmp_path):
     assert main(["plot", str(file), "--variable", variable, "-o", str(tmp_path / "a.svg")]) == 0
 
 
+@pytest.mark.slow
 def test_the_scene_that_comes_with_the_package(tmp_path):
     scene = vs.load_scene(ROOT / "configs" / "branches" / "symmetric.yaml")
     schema = jsonschema.Draft7Validator(json_schema())

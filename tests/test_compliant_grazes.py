@@ -48,6 +48,7 @@ def test_a_hundred_thousand_flights(masses, capsys):
     assert wrong(rows, masses) == 0
 
 
+@pytest.mark.slow
 def test_the_judge_sees_a_stop_that_is_moved():
     """By 10^-12 of the clearance: outwards contacts are missed, inwards they are invented."""
     missed, invented = (judge(1, 1, 1000, default_rng(1), moved=by) for by in (1e-12, -1e-12))

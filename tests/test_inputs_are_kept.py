@@ -6,6 +6,7 @@ from pathlib import Path
 
 import h5py
 import pytest
+from support import slow_cases
 
 import vibro_sweep as vs
 from vibro_sweep.cli.commands import main
@@ -121,10 +122,9 @@ def test_a_picture_replaces_nothing_that_it_shows(folder, capsys):
 @pytest.mark.parametrize(
     "name, dataset, command",
     [
-        ("w.h5", "window_lo", "windows s.h5"),
         ("w.h5", "window_lower", "windows s.h5"),
-        ("br.h5", "b", "run br.yaml"),
         ("br.h5", "branch_ends", "run br.yaml"),
+        *slow_cases(("w.h5", "window_lo", "windows s.h5"), ("br.h5", "b", "run br.yaml")),
     ],
 )
 def test_a_damaged_file_is_not_complete_and_resume_mends_it(folder, capsys, name, dataset, command):

@@ -132,6 +132,7 @@ def test_small_numbers_have_room_in_a_narrow_panel():
     assert fig.axes[0].xaxis.get_offset_text().get_text() == "1e\u22124"
 
 
+@pytest.mark.slow
 def test_names_cover_neither_each_other_nor_marks():
     """4 random crowds of marks."""
     rng, named, left_out = np.random.default_rng(0), 0, 0
@@ -217,6 +218,7 @@ def test_a_plane_says_what_its_hatching_means(tmp_path):
     assert not [one for one in fig.axes[0].collections if one.get_gid() == "rest"]
 
 
+@pytest.mark.slow
 def test_a_line_beyond_the_frame_is_not_in_the_legend(tmp_path):
     file, _ = planes_of(np.random.default_rng(4), tmp_path, "p.h5")  # b* = 6.7057
     assert any("b^*" in text for text in entries(plotting.figure(file)))

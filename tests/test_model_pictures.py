@@ -100,6 +100,7 @@ def test_both_grazes_and_both_stops_over_the_clearance(tmp_path):
     np.testing.assert_allclose(stops[label].get_ydata() - stops[label].get_xdata(), 0.2, rtol=1e-12)
 
 
+@pytest.mark.slow
 def test_the_double_graze_unfolds_in_a_plane(tmp_path):
     ax = plotting.figure(run(tmp_path, PLANE)).axes[0]
     curves = {line.get_label(): line.get_data() for line in ax.lines if line.get_gid() == "grazing"}

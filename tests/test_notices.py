@@ -37,11 +37,11 @@ def told(tmp_path, program: str) -> str:
     [
         ("", f"vibro_sweep: {MESSAGE}vibro_sweep: warning: beware\n"),
         *slow_cases(
+            ("logging.basicConfig(format='of mine: %(message)s')", f"of mine: {MESSAGE}of mine: beware\n"),
             ("logging.getLogger('vibro_sweep').setLevel(logging.WARNING)", "vibro_sweep: warning: beware\n"),
             ("logging.getLogger('vibro_sweep').setLevel(logging.CRITICAL)", ""),
             ("logging.getLogger('vibro_sweep').addHandler(logging.NullHandler())", ""),
         ),
-        ("logging.basicConfig(format='of mine: %(message)s')", f"of mine: {MESSAGE}of mine: beware\n"),
     ],
 )
 def test_it_is_said_once_and_can_be_silenced(tmp_path, before, expected):

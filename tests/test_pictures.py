@@ -42,7 +42,7 @@ def test_a_picture_of_ours_is_drawn_anew_until_somebody_changes_it(folder, suffi
     assert not [name for name in os.listdir() if name.startswith(".")]
 
 
-@pytest.mark.parametrize("suffix", [".png", ".svg", *slow_cases(".pdf")])
+@pytest.mark.parametrize("suffix", [".png", *slow_cases(".svg", ".pdf")])
 def test_a_seal_makes_no_picture_worse(folder, suffix):
     """It is a chunk of text, or a comment."""
     plotting.plot("x.h5", f"a{suffix}")

@@ -80,6 +80,7 @@ def test_variable_over_time(files, name):
     assert (len(ax.lines) == 3) == (name == "x1")  # with both stops
 
 
+@pytest.mark.slow
 def test_variable_of_a_plane(files):
     data = vs.open(files / "plane.h5")
     for name in ("min_impact_speed", "impacts_right", "period", "lyapunov_residual"):
@@ -129,6 +130,7 @@ def test_limits(files, monkeypatch):
     assert tuple(picture.get_extent()[2:]) == (6, 6.5)
 
 
+@pytest.mark.slow
 def test_limits_of_a_plane(files):
     for ax in plotting.figure(files / "plane.h5", options=PlotOptions(xlim=(6.2, 6.8), ylim=(0.72, 0.81))).axes:
         if ax.get_label() != "<colorbar>":
@@ -199,6 +201,7 @@ def test_limits_of_a_frequency_are_said_in_hertz_too(tmp_path):
         vs.plot(data, "iteration", at={"Hz": 1})
 
 
+@pytest.mark.slow
 def test_a_single_orbit_does_not_replace_the_diagram(here, tmp_path):
     assert main(["plot", str(here / "sweep.h5")]) == 0
     diagram = Path("sweep.png").read_bytes()

@@ -107,6 +107,7 @@ def test_nothing_to_show(tmp_path):
         plotting.figure(numbers)
 
 
+@pytest.mark.slow
 def test_drawing_needs_no_display_and_no_engine(sweep):
     code = (
         "import sys; from vibro_sweep import plotting; plotting.plot(sys.argv[1], kind='all');"

@@ -6,6 +6,7 @@ import h5py
 import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
+from support import slow_cases
 
 import vibro_sweep as vs
 from vibro_sweep import plotting
@@ -196,9 +197,11 @@ def test_words():
     "text",
     [
         "sweep: {b: {values: [5, 6]}}\nobserve: [section, lyapunov, impacts]",
-        "sweep: {b: {values: [5, 6]}}\nstart: {random: 2}\nobserve: [attractors]",
-        "sweep: {b: {values: [5, 6]}, R: {values: [0.5, 0.6]}}\nobserve: [section, lyapunov, impacts]",
         "sweep: {x1: {values: [0, 1]}, v1: {values: [0, 1]}}\nobserve: [attractors]",
+        *slow_cases(
+            "sweep: {b: {values: [5, 6]}}\nstart: {random: 2}\nobserve: [attractors]",
+            "sweep: {b: {values: [5, 6]}, R: {values: [0.5, 0.6]}}\nobserve: [section, lyapunov, impacts]",
+        ),
     ],
 )
 @pytest.mark.filterwarnings("error", "ignore::DeprecationWarning")  # of the lowest matplotlib

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from matplotlib.colors import to_rgba
+from support import slow_cases
 from support.files import described
 from support.oscillators import PAPER
 from support.pictures import image, write
@@ -71,7 +72,7 @@ def test_what_errors_do_not_tell_from_zero_has_the_neutral_colour(tmp_path):
     assert "above zero by more than 2 errors: 3 of 10 orbits; not told from zero: 4" in described(file)
 
 
-@pytest.mark.parametrize("size", [40, 1300])
+@pytest.mark.parametrize("size", [40, *slow_cases(1300)])
 def test_periods_are_written_where_there_is_room(tmp_path, size):
     period = np.ones((size, size), np.int8)
     side = 3 * size // 8
@@ -91,7 +92,7 @@ def test_what_has_no_number_is_hatched_and_named(plane):
     assert [text.get_text() for text in fig.legends[0].get_texts()][1:] == ["no number"]
 
 
-@pytest.mark.parametrize("value", [-0.02, 0.03, 0.0])
+@pytest.mark.parametrize("value", [-0.02, *slow_cases(0.03, 0.0)])
 def test_plane_of_one_sign(tmp_path, value):
     coordinates = {"b": [1.0, 2.0], "R": [0.1, 0.2]}
     file = write(tmp_path / "s.h5", coordinates, {"lyapunov": np.full((2, 2, 4), value)})
@@ -134,6 +135,7 @@ def test_planes_relative_to_the_grazing_clearance(tmp_path, monkeypatch, capsys)
     assert "relative: belongs to charts and planes; line.h5 can show bifurcation" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_a_plane_is_opened_twice_and_each_number_read_once(plane, tmp_path, monkeypatch):
     """To see what the file holds, and to draw it; of the exponents the largest alone. It takes long of 10^6 points."""
     opened, read = [], []

@@ -55,6 +55,7 @@ def test_a_scene_that_is_written_and_read_again_says_the_same(path, tmp_path):
     assert again.to_yaml() == scene.replace().to_yaml() == scene.to_yaml()
 
 
+@pytest.mark.slow
 def test_the_graze_of_a_scene_of_branches_is_that_of_its_oscillator(folder, capsys):
     assert main(["grazing", str(folder / "lr.yaml")]) == 0
     assert "b*    = 6.7057167409730" in capsys.readouterr().out
@@ -75,6 +76,7 @@ def test_a_report_says_what_became_of_branches(folder):
     assert report.bad == 0 and report.computed == 0 and report.seconds > 0
 
 
+@pytest.mark.slow
 def test_a_scene_of_branches_is_changed_as_one_of_a_sweep_is(folder):
     scene = vs.load_scene(folder / "lr.yaml")
     changed = scene.replace(depth=0, parameter={"omega": (0.6, 0.7)}, system=scene.system.replace(R=0.7))
@@ -122,6 +124,7 @@ def test_windows_of_a_dataset_are_those_of_its_file(folder, tmp_path):
     assert numbers(tmp_path / "w.h5") == numbers(folder / "sweep.windows.h5")
 
 
+@pytest.mark.slow
 def test_windows_of_a_part_are_not_taken_for_those_of_the_whole(folder, tmp_path):
     with vs.open(folder / "sweep.h5") as data:
         left, right = data.isel(b=slice(0, 11)), data.isel(b=slice(10, 21))
@@ -155,9 +158,9 @@ def test_what_is_not_a_sweep_has_no_windows(folder):
 
 OPTIONS = [
     ({}, []),
-    ({"size": (5, 3), "dpi": 80}, ["--size", "5", "3", "--dpi", "80"]),
     ({"kind": "iteration", "at": {"b": 6.7}}, ["--kind", "iteration", "--at", "b=6.7"]),
     *slow_cases(
+        ({"size": (5, 3), "dpi": 80}, ["--size", "5", "3", "--dpi", "80"]),
         ({"xlim": (6.6, 6.8), "ylim": (-1, 1)}, ["--xlim", "6.6", "6.8", "--ylim", "-1", "1"]),
         ({"width": 85, "variable": "v1"}, ["--width", "85", "--variable", "v1"]),
         ({"windows": "sweep.windows.h5"}, ["--windows", "sweep.windows.h5"]),

@@ -162,6 +162,7 @@ def test_a_curve_ends_where_a_stop_does_not_relax_any_more():
     assert np.exp(-29 / c * away) * (1 + 29 / c / omega) == pytest.approx(2**-53, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_windows_of_a_rubber_stop():
     """Every window has a label at both ends; the motion is stable inside and gone, or unstable, beyond."""
     system = one_mass(zeta=0.02, c_stop=1.0, F=0.4)

@@ -144,6 +144,7 @@ def test_windows(tmp_path):
     assert windows.plot().axes
 
 
+@pytest.mark.slow
 def test_the_file_of_a_scene_gives_a_list(tmp_path):
     (tmp_path / "s.yaml").write_text(
         "system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 2.0}\n"
@@ -168,6 +169,7 @@ def test_a_branch_that_could_not_be_followed(orbit, tmp_path):
         assert again.status == "failed" and again.points.identical(branch.points) and repr(again) == repr(branch)
 
 
+@pytest.mark.slow
 def test_a_number_that_breaks_the_symmetry(tmp_path):
     """At one value of the branch the oscillator is symmetric: there mirror images are not told either."""
     orbit = vs.periodic_orbit(SYSTEM.replace(b=2.0), itinerary="LR")
@@ -263,6 +265,7 @@ def test_a_sweep_without_windows(tmp_path):
     check_html(windows)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("cut", [{"omega": 0.63}, *slow_cases({"b": slice(6.4, 6.5)})])
 def test_windows_of_a_part_of_a_sweep(cut, tmp_path):
     """Of other shape than the sweep; a swept number of which one value is left is that of the windows."""

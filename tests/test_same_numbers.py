@@ -19,6 +19,8 @@ from vibro_sweep.driver.attractor_ids import number_attractors
 from vibro_sweep.driver.drawn_starts import starts_of
 from vibro_sweep.scene import parse_scene
 
+SMALL = ("random", "follow", "attractors", "basins", "compliant, follow")
+
 
 @pytest.mark.parametrize(
     "name",
@@ -26,9 +28,8 @@ from vibro_sweep.scene import parse_scene
         "random",
         "follow",
         "attractors",
-        "compliant",
         "compliant, follow",
-        *slow_cases("plane", "basins", "compliant, force"),
+        *slow_cases("plane", "basins", "compliant", "compliant, force"),
     ],
 )
 def test_workers_do_not_matter(tmp_path, name):
@@ -68,7 +69,7 @@ def test_a_trajectory_leaves_all_else_as_it_is(tmp_path, name):
     assert_same_bits({key: found[key] for key in alone}, alone)
 
 
-@pytest.mark.parametrize("name", EVERY)
+@pytest.mark.parametrize("name", [*SMALL, *slow_cases(*[name for name in EVERY if name not in SMALL])])
 def test_block_size_does_not_matter(tmp_path, name):
     scene, whole = scene_of(*EVERY[name]), run(tmp_path, *EVERY[name])
     numbers = []

@@ -120,6 +120,7 @@ def judge_flights(count, rng):
     return rows
 
 
+@pytest.mark.slow
 def test_the_reference_sees_what_was_built():
     rng = default_rng(7)
     free = 0
