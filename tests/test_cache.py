@@ -47,6 +47,7 @@ def entries(folder, ending):
     return found
 
 
+@pytest.mark.slow
 def test_why_there_is_a_wait_is_said_once(program, tmp_path):
     """For two kernels one message, and none where both are in the cache."""
     said = "import logging\nlogging.basicConfig(level=logging.INFO, format='%(message)s')\n"

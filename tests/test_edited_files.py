@@ -18,6 +18,7 @@ from vibro_sweep.store.attributes import set_text, set_texts
 # What is not ours in a file
 
 
+@pytest.mark.slow
 def test_what_users_add_does_not_matter(folder, capsys):
     whole = arrays_of("x.h5")
     with h5py.File("x.h5", "a") as file:

@@ -89,6 +89,7 @@ CASES = {
 
 LONG = {
     "chatter and rests",
+    "one mode overdamped",
     "at rest in the end",
     "many impacts",
     "three halves",

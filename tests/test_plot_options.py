@@ -51,6 +51,7 @@ def test_point(files):
     assert len(plotting.figure(files / "plane.h5", "iteration", PlotOptions(at={"b": 6})).axes) == 2
 
 
+@pytest.mark.slow
 def test_a_point_asks_for_a_picture_of_single_orbits(files, tmp_path):
     fig = plotting.figure(files / "sweep.h5", options=PlotOptions(at={"b": 6.6}))
     assert fig.get_suptitle().startswith("Phase portrait")

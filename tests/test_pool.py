@@ -177,6 +177,7 @@ def test_a_broken_process_pool_is_resumed(tmp_path, whole):
     assert_same_bits(arrays_of(output), whole)
 
 
+@pytest.mark.slow
 def test_ctrl_c_does_not_wait_for_a_block(tmp_path):
     """One orbit of 10^9 periods, which takes minutes."""
     (tmp_path / "long.yaml").write_text(f"system: {{{PAPER}}}\norbit: {{transient: 1.0e+9, record: 1}}\n")

@@ -6,6 +6,7 @@ import h5py
 import numpy as np
 import pytest
 import xarray
+from support import slow_cases
 from support.files import described
 from support.stored import ALL, IMPACTS, LYAPUNOV, PLANE, SECTION, SWEEP, scene_of
 
@@ -44,7 +45,10 @@ EXTRA = {
 }
 
 
-@pytest.fixture(scope="module", params=KINDS)
+SMALL = ("one orbit", "impact section", "random", "follow both", "plane")
+
+
+@pytest.fixture(scope="module", params=[*SMALL, *slow_cases(*[kind for kind in KINDS if kind not in SMALL])])
 def made(request, tmp_path_factory):
     """A kind, and its file."""
     path = tmp_path_factory.mktemp("made") / "out.h5"

@@ -74,6 +74,7 @@ def test_a_run_that_is_interrupted_goes_on(few, file, tmp_path):  # noqa: F811
     assert not (tmp_path / "w.h5.part").exists()
 
 
+@pytest.mark.slow
 def test_interrupted_when_the_file_has_its_name(few, file, tmp_path, monkeypatch):  # noqa: F811
     """And its part is still there: nothing is followed again."""
 
