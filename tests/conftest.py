@@ -31,9 +31,9 @@ sys.dont_write_bytecode = False
 if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
-# Two workers begin with these. One compiles the kernels of any oscillator and of compliant stops, and uses them again; the
-# other those of the paper's oscillator, what is built upon them (in one process this takes half the time), and those of
-# branches. With the same kernels to compile, both would do so at the same moment.
+# Two workers begin with these. One compiles the kernels of any oscillator and of compliant stops, and uses them again;
+# the other those of the paper's oscillator, what is built upon them (in one process this takes half the time), and
+# those of branches. With the same kernels to compile, both would do so at the same moment.
 FIRST = [
     f"test_{name}.py"
     for name in (
