@@ -38,7 +38,7 @@ FIRST = [
     f"test_{name}.py"
     for name in (
         *("any_oscillator", "system", "compliant_stops", "discontinuity", "models", "energy"),
-        *("continuation", "compliant_orbits", "from_python"),
+        *("energy_of_stops", "continuation", "compliant_orbits", "from_python"),
     )
 ]
 
