@@ -1,8 +1,8 @@
 """Flights past a compliant stop at 10^-1 .. 10^-14 of the clearance, of one mass to 10^-15: no contact missed, none
 invented.
 
-`pytest -m soak` has 10^5 flights for each number of masses; tests/data/compliant_grazes.log has these of one mass, and 10^4 of
-two and of three.
+`pytest -m soak` has 10^5 flights for each number of masses; tests/data/compliant_grazes.log has these of one mass,
+and 10^4 of two and of three.
 """
 
 import pytest
