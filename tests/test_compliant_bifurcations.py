@@ -142,6 +142,8 @@ def test_two_contacts_become_one(numbers, bounds, tmp_path):
     read = vs.load(branch.save(tmp_path / "branch.h5"))
     (again,) = [one for one in read.special if one.type == "split"]
     assert again.multipliers == pytest.approx(special.multipliers, abs=1e-12)
+    from_there = [one.type for one in vs.continue_orbit(special.orbit, "offset", bounds).special]
+    assert [one.type for one in branch.special] in (from_there, from_there[::-1])
     solution, _, _ = turning_within(special)
     beside = [solution.family.replace(offset=special.parameters["offset"] + step) for step in (-1e-6, 1e-6)]
     found = [replace(solution, family=family).corrected() for family in beside]

@@ -3,10 +3,12 @@
 import numpy as np
 
 from vibro_sweep.analysis.branches.free_run import FreeBranch, FreePoint
+from vibro_sweep.analysis.branches.split_contacts import set_apart
 from vibro_sweep.analysis.continuation.first_point import beside_start, followed_from, start_of_branch
 from vibro_sweep.analysis.continuation.point import Point
 from vibro_sweep.analysis.continuation.solution_curve import branch_through
 from vibro_sweep.analysis.continuation.starting_orbit import keeps_symmetry
+from vibro_sweep.analysis.periodic.joined_contacts import contacts_are_one
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.model.errors import ArgumentError, VibroSweepError
 
@@ -32,9 +34,10 @@ def start_of_run(solution: Solution, name: str, lo: float, hi: float, stable: bo
     if solution.sigma == -1 and not keeps_symmetry(solution.family, name):
         solution = solution.whole()
     unit = max(hi - lo, NARROW * max(abs(lo), abs(hi)))
+    together = contacts_are_one(solution)
     if solution.K:
         curve = branch_through(solution, name, unit, (lo, hi))
-        first = start_of_branch(curve)
+        first = None if together else start_of_branch(curve)
     else:
         curve = FreeBranch(solution, (name,), unit, ((lo, hi),))
         first = curve.at(solution.family.numbers[name], 1.0)
@@ -42,7 +45,10 @@ def start_of_run(solution: Solution, name: str, lo: float, hi: float, stable: bo
         return first
     for length in BESIDE if first is not None else (*BESIDE, *FARTHER):
         for sign in (1, -1):
-            beside = beside_start(curve, sign * length) if solution.K else first and first.ahead(sign * length)
+            if together:
+                beside = set_apart(curve, sign * length)
+            else:
+                beside = beside_start(curve, sign * length) if solution.K else first and first.ahead(sign * length)
             if (
                 beside is not None
                 and lo <= beside.value <= hi

@@ -12,7 +12,8 @@ from scipy.optimize import brentq
 
 from vibro_sweep.analysis.branches.branch_events import SPLIT, locate
 from vibro_sweep.analysis.continuation.events import LocatedEvent
-from vibro_sweep.analysis.continuation.first_point import first_place
+from vibro_sweep.analysis.continuation.first_point import first_place, guess_of
+from vibro_sweep.analysis.continuation.point import Point
 from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve
 from vibro_sweep.analysis.periodic.joined_contacts import flights_between, joined, parted, turned
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
@@ -45,13 +46,29 @@ def joined_contacts(curve: SolutionCurve, s: Solution, theta: float = 0.0) -> tu
         other = one.step(first, step)
         found = other and locate(one, SPLIT, first, other)
         if found:
-            return found, _with_both(found.place.solution, index, near, wraps)
+            both = _with_both(found.place.solution, index, near, wraps)
+            return (found, both) if both else None
     return None
 
 
-def _with_both(s: Solution, index: int, near: float, wraps: bool) -> Solution:
+def set_apart(curve: SolutionCurve, length: float) -> Point | None:
+    """The orbit with a flight of this length, in phase, between two contacts that are one where the curve begins."""
+    index = int(flights_between(curve.orbit).argmin())
+    following, row, guess = (index + 1) % curve.K, np.zeros(2 * curve.K + 3), guess_of(curve)
+    if guess is None:
+        return None
+    row[[index, curve.K + index, following]] = -1.0, -1.0, 1.0
+    guess.phases[following] += length
+    guess.jumps[following] -= length
+    return curve.correct(guess, curve.unit_row(row))
+
+
+def _with_both(s: Solution, index: int, near: float, wraps: bool) -> Solution | None:
     """The orbit in which contact `index` ends where the gap is at rest, near this time, and the next one begins."""
     normal, beside = s.family.linear.normal, BESIDE / s.family.linear.omega
     orbit = PeriodicOrbit(None, "ok", s, (0, 0))
-    time = brentq(lambda t: orbit.sample([t])[0, 1::2] @ normal, near - beside, near + beside, xtol=1e-15)
+    try:
+        time = brentq(lambda t: orbit.sample([t])[0, 1::2] @ normal, near - beside, near + beside, xtol=1e-15)
+    except ValueError:  # it is not at rest there
+        return None
     return turned(parted(s, 0, time - s.P), -1) if wraps else parted(s, index, time)

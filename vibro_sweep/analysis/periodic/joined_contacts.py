@@ -11,6 +11,8 @@ import numpy as np
 if TYPE_CHECKING:
     from vibro_sweep.analysis.periodic.solution import Solution
 
+ROUNDING = 1e-14  # of times, in parts of the period
+
 
 def flights_between(s: "Solution") -> np.ndarray:
     """(K,) times from the end of each contact to the next one where that is with the same stop, else inf."""
@@ -18,6 +20,11 @@ def flights_between(s: "Solution") -> np.ndarray:
     following, pressed = np.append(times[1:], times[:1] + s.P), s.family.linear.is_compliant(sides)
     same = np.append(sides[1:], s.sigma * sides[:1]) == sides
     return np.where(pressed & np.roll(pressed, -1) & same & (s.K > 1), following - ends, np.inf)
+
+
+def contacts_are_one(s: "Solution") -> bool:
+    """Whether the mass does not leave its stop between two contacts, to rounding."""
+    return bool(flights_between(s).min(initial=np.inf) <= ROUNDING * s.P)
 
 
 def joined(s: "Solution", index: int) -> "Solution":

@@ -11,7 +11,7 @@ import numpy as np
 from vibro_sweep.analysis.periodic.contact_numbers import one_plus_R
 from vibro_sweep.analysis.periodic.event_equations import EventEquations
 from vibro_sweep.analysis.periodic.itinerary import is_mirrored, repetitions
-from vibro_sweep.analysis.periodic.joined_contacts import flights_between, joined
+from vibro_sweep.analysis.periodic.joined_contacts import contacts_are_one, flights_between, joined
 from vibro_sweep.analysis.periodic.motion_between import contacts_of, fly, multipliers_of
 from vibro_sweep.analysis.periodic.resting_orbit import RestingOrbit
 from vibro_sweep.analysis.periodic.steady_gap import steady_gap
@@ -117,9 +117,8 @@ class Solution:
     def multipliers(self) -> np.ndarray:
         """Multipliers of the map over P, with the mirror for sigma = -1."""
         if self.rests:
-            apart = flights_between(self)
-            if apart.min() <= 0:
-                return joined(self, int(apart.argmin())).multipliers
+            if contacts_are_one(self):
+                return joined(self, int(flights_between(self).argmin())).multipliers
             return self.resting.multipliers()
         q = self.family.linear
         return multipliers_of(flow(q), self.sigma, self.P, contacts_of(q, self.sides), self.u, self.motion)
