@@ -93,9 +93,14 @@ class Solution:
         return np.column_stack([np.where(v != 0, v, states[:, N]), rates[:, N], rates @ B[N]])
 
     @cached_property
+    def _with_flights(self) -> "Solution":
+        """This orbit, without a flight of no length between two contacts, at which its equations are singular."""
+        return joined(self, int(flights_between(self).argmin())) if contacts_are_one(self) else self
+
+    @cached_property
     def _flights(self):
         if self.rests:
-            return self.resting.states, *self.resting.certificate()
+            return self.resting.states, *self._with_flights.resting.certificate()
         return fly(self.family.linear, self.sigma, self.half_periods, self.sides, self.u)
 
     @property
@@ -117,9 +122,7 @@ class Solution:
     def multipliers(self) -> np.ndarray:
         """Multipliers of the map over P, with the mirror for sigma = -1."""
         if self.rests:
-            if contacts_are_one(self):
-                return joined(self, int(flights_between(self).argmin())).multipliers
-            return self.resting.multipliers()
+            return self._with_flights.resting.multipliers()
         q = self.family.linear
         return multipliers_of(flow(q), self.sigma, self.P, contacts_of(q, self.sides), self.u, self.motion)
 
