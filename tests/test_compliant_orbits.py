@@ -3,6 +3,8 @@
 Those of two masses are slow: their kernels serve no other fast test.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from reference.compliant_orbits import ContactOrbit
@@ -10,6 +12,7 @@ from support import slow_cases
 from support.compliant_bifurcations import PAPER, one_mass, paper
 
 import vibro_sweep as vs
+from vibro_sweep.analysis.periodic.periodic_orbit import orbit_of
 
 
 def in_thirty_digits(orbit):
@@ -113,7 +116,14 @@ def test_a_pair_on_the_circle_and_a_graze_of_the_free_motion():
     free = vs.periodic_orbit(paper(8, 1e4), itinerary="")
     x1 = free.sample(np.linspace(0, free.system.period, 4001))[:, 0]
     assert last.parameters["b"] == pytest.approx(x1.max(), abs=1e-5)
-    assert vs.switch(last)[0].itinerary == "" and vs.switch(first)[0].itinerary == "LR"
+    # just before its contact would vanish, where the free motion grazes, the orbit passes the other stop
+    beyond = (last.parameters["b"] + vs.grazing(free.system).b_right) / 2
+    solution = last.orbit._solution
+    orbit = orbit_of(paper(beyond, 1e4), replace(solution, family=solution.family.replace(b=beyond)).corrected())
+    times = np.linspace(0, orbit.system.period, 4001)
+    near = times[np.argmin(orbit.sample(times)[:, 0])] + np.linspace(-0.01, 0.01, 4001)
+    assert last.stop == -1 and orbit.status == "inadmissible" and orbit.sample(near)[:, 0].min() < -beyond - 1e-9
+    assert vs.switch(last)[0].itinerary == vs.switch(first)[0].itinerary == "LR"
 
 
 @pytest.mark.slow
@@ -133,7 +143,7 @@ def test_a_branch_that_a_flip_begins():
 def test_a_preload_makes_a_graze_as_of_rigid_stops():
     """With a preload the speed is proportional to the distance from the graze, without it to its square root."""
     for preload, power in ((0.0, 0.5), (1.0, 1.0)):
-        system = paper(4, 1e4, preload=preload)
+        system = paper(4, 1e4, preload=preload, stops="right")
         branch = vs.continue_orbit(vs.periodic_orbit(system, itinerary="R"), "b", (3, 7))
         graze = next(one for one in (branch.begins, branch.ends) if one.impact is not None)
         b, lengths = graze.parameters["b"], []
