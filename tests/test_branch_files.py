@@ -130,7 +130,7 @@ def test_other_beginnings(begin, parameter, number, tmp_path):
         (dict(parameter="{b: [1, 4], omega: [0.7, 0.8]}"), "system.omega = 0.63: must be in"),
         (dict(parameter="{}"), "continue.parameter = []: must have one key, or two for curves"),
         (dict(more="of: [fold]"), "continue.of: belongs to two keys of `parameter`"),
-        (dict(more="follow: [fold]"), 'continue.follow[0] = "fold": allowed: graze, pitchfork, flip'),
+        (dict(more="follow: [fold]"), 'continue.follow[0] = "fold": allowed: split, graze, pitchfork, flip'),
         (dict(more="deep: 1"), "continue.deep = 1: unknown key; did you mean `depth`?"),
         (dict(more="follow: 3"), "continue.follow = 3: must be a list of words"),
         (dict(begin="{itinerary: 3}"), "continue.from.itinerary = 3: must be a text"),

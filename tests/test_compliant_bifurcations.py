@@ -144,6 +144,14 @@ def test_two_contacts_become_one(numbers, bounds, tmp_path):
     assert again.multipliers == pytest.approx(special.multipliers, abs=1e-12)
     from_there = [one.type for one in vs.continue_orbit(special.orbit, "offset", bounds).special]
     assert [one.type for one in branch.special] in (from_there, from_there[::-1])
+    (one,) = vs.switch(special)
+    assert one.ok and len(one.contacts) == len(contacts) - 1
+    far = vs.continue_orbit(one, "offset", bounds)
+    met = [end for end in far.special if end.type == "split"]
+    assert min(abs(end.parameters["offset"] - special.parameters["offset"]) for end in met) < 1e-12
+    back = next(end for end in met if abs(end.parameters["offset"] - special.parameters["offset"]) < 1e-12)
+    (two,) = vs.switch(back)
+    assert two.ok and len(two.contacts) == len(contacts)
     solution, _, _ = turning_within(special)
     beside = [solution.family.replace(offset=special.parameters["offset"] + step) for step in (-1e-6, 1e-6)]
     found = [replace(solution, family=family).corrected() for family in beside]

@@ -61,9 +61,8 @@ TYPES = (
     Bifurcation("failed", "the branch could not be followed any further",
                 advice="What was computed is valid. Begin from an orbit beyond that place, or go round it in "
                        "another parameter."),
-    Bifurcation("split", "within a contact the mass comes back to its stop: two contacts become one",
-                advice="Orbits with one contact more, or less, exist beyond: `simulate` finds them where they are "
-                       "attractors."),
+    Bifurcation("split", "within a contact the mass comes back to its stop: two contacts become one", beyond="split",
+                advice="Orbits with one contact more, or less, begin there: `switch` or `follow: [split]` finds them."),
     Bifurcation("unrelaxed", "with `release: force` a stop is touched before it has relaxed: no bifurcation",
                 advice="The motion goes on: `simulate` and `sweep` compute it. Branches need stops that are at rest "
                        "again at their next touch."),

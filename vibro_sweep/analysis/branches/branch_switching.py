@@ -1,4 +1,4 @@
-"""`switch`: from a pitchfork, a flip or a graze to the orbits that branch off there."""
+"""`switch`: from a pitchfork, a flip, a graze or a split contact to the orbits that branch off there."""
 
 import math
 from dataclasses import replace
@@ -8,6 +8,9 @@ import numpy as np
 from vibro_sweep.analysis.branches.births import born, is_steady
 from vibro_sweep.analysis.branches.sizes import size_of
 from vibro_sweep.analysis.branches.special import Graze, SpecialPoint, graze_at, slopes
+from vibro_sweep.analysis.branches.split_contacts import in_two, set_apart
+from vibro_sweep.analysis.continuation.solution_curve import branch_through
+from vibro_sweep.analysis.periodic.joined_contacts import contacts_are_one, without_flights
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit, found_orbit
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.model.arguments import check_type
@@ -16,12 +19,14 @@ from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.refusals import not_allowed
 
 BESIDE = 1e-4  # relative distance of the parameter from a graze
+APART = (1e-2, 1e-3, 1e-4)  # of 1/omega: the flight between the two contacts of an orbit beside a split
 NEAR = 0.1  # of the orbit beside a graze to what its slopes say, in 1/omega and the speed of the gap
 
 
 def switch(special: SpecialPoint) -> list[PeriodicOrbit]:
-    """Orbits just beyond a pitchfork (two mirror images), a flip (the doubled one) or a graze (with, or without, the
-    impact that has no speed there; at the graze of the free motion those that hit one stop or both).
+    """Orbits just beyond a pitchfork (two mirror images), a flip (the doubled one), a graze (with, or without, the
+    impact that has no speed there; at the graze of the free motion those that hit one stop or both) or a split (with
+    one contact in place of two, or with two).
 
     Orbits that pass a stop are left out, as is free motion that is one of a family (`resonance` in `periodic_orbit`):
     no branch begins with it. Raises ValueError for a special point of another type.
@@ -54,6 +59,24 @@ def _beyond_graze(special: SpecialPoint) -> list[Solution | None]:
     return result
 
 
+def _beyond_split(special: SpecialPoint) -> list[Solution | None]:
+    solution, name = special.orbit._solution, next(iter(special.parameters))
+    unit = size_of(solution, name)
+    if not contacts_are_one(solution):
+        curve = branch_through(in_two(solution), name, unit)
+        found = (set_apart(curve, length) for length in APART)
+        return [next((one.solution for one in found if one is not None and one.solution.real), None)]
+    one, value = without_flights(solution), solution.family.numbers[name]
+    for step in (sign * BESIDE * unit / 2**k for k in range(20) for sign in (1, -1)):
+        try:
+            found = replace(one, family=one.family.replace(**{name: value + step})).corrected()
+        except ValueError:  # the parameter is beyond its range
+            continue
+        if found is not None and found.real and np.abs((found.u - one.u) / one.units).max() < NEAR:
+            return [found]
+    return []
+
+
 def _on_the_left(solution: Solution) -> int:
     return solution.sides.count(-1)
 
@@ -64,6 +87,7 @@ BEYOND = {  # what branches off a type of special point
         born(special.orbit._solution, next(iter(special.parameters)), sign) for sign in (1, -1)
     ],
     "graze": _beyond_graze,
+    "split": _beyond_split,
 }
 
 

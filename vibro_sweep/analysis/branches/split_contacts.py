@@ -22,6 +22,7 @@ from vibro_sweep.engine.continuation.problem import GRAZE
 
 SHORT = 1e-3  # of 1/omega: the flight between two contacts that are about to be one
 STEPS = np.geomspace(1e-9, 1e-2, 15)  # along the branch of orbits with one contact
+WITHIN = 401  # times within a contact
 BESIDE = 1e-3  # of 1/omega, about the time at which the mass is at rest
 
 
@@ -63,12 +64,29 @@ def set_apart(curve: SolutionCurve, length: float) -> Point | None:
     return curve.correct(guess, curve.unit_row(row))
 
 
+def in_two(s: Solution) -> Solution:
+    """The orbit with the contact within which the mass is nearest to its stop, at rest, as two."""
+    orbit, q, found = PeriodicOrbit(None, "ok", s, (0, 0)), s.family.linear, []
+    for index, end in zip(s.rests, s.ends.tolist(), strict=True):
+        times = np.linspace(s.times[index], end, WITHIN)
+        depth = s.sides[index] * (orbit.sample(times)[:, 0::2] @ q.normal)
+        least = np.flatnonzero((depth[1:-1] <= depth[:-2]) & (depth[1:-1] <= depth[2:])) + 1
+        found += [(depth[k] - s.sides[index] * q.stop(s.sides[index]), index, times[k]) for k in least]
+    _, index, near = min(found)
+    step = (s.ends[s.rests.index(index)] - s.times[index]) / (WITHIN - 1)
+    return parted(s, index, at_rest(orbit, near, step))
+
+
+def at_rest(orbit: PeriodicOrbit, near: float, beside: float) -> float:
+    """When the gap is at rest, so near to a time. Raises ValueError where it is not."""
+    normal = orbit._solution.family.linear.normal
+    return brentq(lambda t: orbit.sample([t])[0, 1::2] @ normal, near - beside, near + beside, xtol=1e-15)
+
+
 def _with_both(s: Solution, index: int, near: float, wraps: bool) -> Solution | None:
     """The orbit in which contact `index` ends where the gap is at rest, near this time, and the next one begins."""
-    normal, beside = s.family.linear.normal, BESIDE / s.family.linear.omega
-    orbit = PeriodicOrbit(None, "ok", s, (0, 0))
     try:
-        time = brentq(lambda t: orbit.sample([t])[0, 1::2] @ normal, near - beside, near + beside, xtol=1e-15)
+        time = at_rest(PeriodicOrbit(None, "ok", s, (0, 0)), near, BESIDE / s.family.linear.omega)
     except ValueError:  # it is not at rest there
         return None
     return turned(parted(s, 0, time - s.P), -1) if wraps else parted(s, index, time)

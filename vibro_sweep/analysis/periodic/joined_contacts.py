@@ -27,6 +27,11 @@ def contacts_are_one(s: "Solution") -> bool:
     return bool(flights_between(s).min(initial=np.inf) <= ROUNDING * s.P)
 
 
+def without_flights(s: "Solution") -> "Solution":
+    """The motion with two contacts that are one as one; else the solution itself."""
+    return joined(s, int(flights_between(s).argmin())) if contacts_are_one(s) else s
+
+
 def joined(s: "Solution", index: int) -> "Solution":
     """The motion in which this contact and the next one are one."""
     if index == s.K - 1:  # the next one is the first

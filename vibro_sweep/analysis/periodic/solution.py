@@ -11,7 +11,7 @@ import numpy as np
 from vibro_sweep.analysis.periodic.contact_numbers import one_plus_R
 from vibro_sweep.analysis.periodic.event_equations import EventEquations
 from vibro_sweep.analysis.periodic.itinerary import is_mirrored, repetitions
-from vibro_sweep.analysis.periodic.joined_contacts import contacts_are_one, flights_between, joined
+from vibro_sweep.analysis.periodic.joined_contacts import without_flights
 from vibro_sweep.analysis.periodic.motion_between import contacts_of, fly, multipliers_of
 from vibro_sweep.analysis.periodic.resting_orbit import RestingOrbit
 from vibro_sweep.analysis.periodic.steady_gap import steady_gap
@@ -93,14 +93,14 @@ class Solution:
         return np.column_stack([np.where(v != 0, v, states[:, N]), rates[:, N], rates @ B[N]])
 
     @cached_property
-    def _with_flights(self) -> "Solution":
+    def _regular(self) -> "Solution":
         """This orbit, without a flight of no length between two contacts, at which its equations are singular."""
-        return joined(self, int(flights_between(self).argmin())) if contacts_are_one(self) else self
+        return without_flights(self)
 
     @cached_property
     def _flights(self):
         if self.rests:
-            return self.resting.states, *self._with_flights.resting.certificate()
+            return self.resting.states, *self._regular.resting.certificate()
         return fly(self.family.linear, self.sigma, self.half_periods, self.sides, self.u)
 
     @property
@@ -122,7 +122,7 @@ class Solution:
     def multipliers(self) -> np.ndarray:
         """Multipliers of the map over P, with the mirror for sigma = -1."""
         if self.rests:
-            return self._with_flights.resting.multipliers()
+            return self._regular.resting.multipliers()
         q = self.family.linear
         return multipliers_of(flow(q), self.sigma, self.P, contacts_of(q, self.sides), self.u, self.motion)
 
