@@ -1,7 +1,7 @@
 """Exponents with compliant stops: of periodic orbits against eighty digits, and their sum against its exact value.
 
 `python tests/test_compliant_exponents.py FIRST LAST` compares the oscillators FIRST ... LAST - 1, and
-`python tests/test_compliant_exponents.py sums FIRST LAST` computes such planes, a line for each;
+`relaxing FIRST LAST` such that are touched while they relax; `sums FIRST LAST` computes such planes, a line for each;
 tests/data/compliant_exponents.log is what they printed.
 """
 
@@ -11,7 +11,9 @@ import numpy as np
 import pytest
 from support import compliant_exponents, compliant_sums, slow_cases
 
-ORBITS, PLANES = 200, 200
+import vibro_sweep as vs
+
+ORBITS, RELAXING, PLANES = 200, 300, 200
 WITHIN = 5  # times the stated error
 MOST = 1e-12  # of a residual; the share of contact, a sum of many, is known to less
 
@@ -26,6 +28,26 @@ def test_exponents_of_an_orbit_against_eighty_digits():
     report = compliant_exponents.compared(0)
     assert report.period
     hold([report])
+
+
+@pytest.mark.parametrize("masses, z, k, part, known", [
+    (1, 2, 100, 0.04, True),
+    (1, 1, 10, 0.2, False),
+    *slow_cases((1, 3, 30, 0.1, True), (2, 2, 100, 0.1, True), (2, 3, 30, 0.2, True), (1, 1.5, 10, 0.294, False)),
+])  # fmt: skip
+def test_exponents_where_a_contact_shrinks_what_another_stop_keeps(masses, z, k, part, known):
+    """Both stops are touched while they relax, and contacts shrink vectors to e^-100 that have moved the other stop.
+
+    Not known: a pair of multipliers of which the spectrum, of as many exponents as there are states, has one.
+    """
+    law = dict(k_stop=k, c_stop=2 * z * k**0.5, release="force", stops="both", b=0.5, omega=0.8, zeta=0.03)
+    two = vs.System(mu_m=3, mu_k=2, f2=0.4, **law)
+    system = vs.Oscillator.named("one_mass", k=1, F=1, tau=0.3, **law) if masses == 1 else two
+    report = compliant_exponents.compared_at([part * vs.grazing(system).b_right], system)
+    hold([report])
+    assert report.period and report.relaxing
+    assert report.stated[0] < 1e-11
+    assert (report.stated.max() < 1e-11) == known
 
 
 @pytest.mark.slow
@@ -45,6 +67,13 @@ def test_exponents_of_two_hundred_oscillators(capsys):
     hold(reports)
 
 
+@pytest.mark.parametrize("count", [*slow_cases(20), pytest.param(RELAXING, marks=pytest.mark.soak)])
+def test_exponents_with_stops_that_are_touched_while_they_relax(count):
+    reports = [compliant_exponents.compared_relaxing(seed) for seed in range(count)]
+    hold([one for one in reports if one.period])
+    assert sum(one.period > 0 and one.relaxing > 0 for one in reports) >= count // 2
+
+
 @pytest.mark.parametrize("seeds", [(0, 1), *slow_cases(range(2, 16))])
 def test_sums_of_exponents(seeds):
     """As they are stored, and as the share of contact and the impacts of the file give them."""
@@ -60,7 +89,8 @@ def test_sums_of_two_hundred_planes():
 
 if __name__ == "__main__":
     sums, (first, last) = sys.argv[1] == "sums", map(int, sys.argv[-2:])
-    function = compliant_sums.summed if sums else compliant_exponents.compared
+    compared = {"sums": compliant_sums.summed, "relaxing": compliant_exponents.compared_relaxing}
+    function = compared.get(sys.argv[1], compliant_exponents.compared)
     reports = []
     for seed in range(first, last):
         reports.append(function(seed))

@@ -2,8 +2,8 @@
 
 Of a random oscillator a sweep over the clearance finds attractors; the first periodic one with contacts counts. The
 reference (reference/compliant.py) makes it periodic to many digits by Newton's method, and differences of its orbits
-give the monodromy matrix. Where stops relax at the section their places are numbers of the state, too; each gives a
-multiplier that is 0, since the next contact forgets it.
+give the monodromy matrix. Where stops relax at the section their places are numbers of the state, too: as many of
+the multipliers as there are states are compared, the largest ones.
 """
 
 import math
@@ -105,8 +105,11 @@ def compared(seed):
     """The `Report` on oscillator `seed`."""
     system = drawn(seed)
     axis = few_contacts(system, CLEARANCES * vs.grazing(system).b)
-    if not len(axis):
-        return Report(seed, system)
+    return compared_at(axis, system, seed) if len(axis) else Report(seed, system)
+
+
+def compared_at(axis, system, seed=0):
+    """The `Report` on the first periodic orbit with contacts at these clearances."""
     data = vs.sweep(
         system, {"b": axis}, transient=800, record=64, observe=["section", "lyapunov", "multipliers", "contacts"]
     )
@@ -131,6 +134,26 @@ def compared(seed):
         np.array([float(min(abs(one - other) for other in exact)) for one in found]),
         at.multiplier_error.values,
     )  # fmt: skip
+
+
+def compared_relaxing(seed):
+    """The `Report` on an oscillator whose two stops are touched while they relax, most of them."""
+    rng = np.random.default_rng([seed, 23])
+    numbers = dict(b=0.5, omega=rng.uniform(0.4, 1.3), zeta=rng.uniform(0.01, 0.1), stops="both", release="force")
+    law = relaxing_stop(rng) | {"preload": rng.choice([0, 0, 10 ** rng.uniform(-3, -0.5)])}
+    if rng.random() < 0.3:
+        law |= {f"{name}_left": value for name, value in relaxing_stop(rng).items()}
+    if seed % 2:
+        system = vs.System(mu_m=3, mu_k=2, f2=0.4, **numbers, **law)
+    else:
+        system = vs.Oscillator.named("one_mass", k=1, F=1, tau=0.3, **numbers, **law)
+    return compared_at([rng.uniform(0.03, 0.8) * vs.grazing(system).b_right], system, seed)
+
+
+def relaxing_stop(rng):
+    """k_stop and c_stop of a damped or overdamped stop."""
+    k = 10 ** rng.uniform(0.3, 2.5)
+    return {"k_stop": k, "c_stop": 2 * 10 ** rng.uniform(-0.1, 0.8) * math.sqrt(k)}
 
 
 def few_contacts(system, axis):

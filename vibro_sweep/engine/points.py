@@ -52,7 +52,8 @@ class Workspace(NamedTuple):
     section: np.ndarray  # (orbits, record, 2 N)
     growth: np.ndarray  # (LANES, parts, 2 N)
     state: np.ndarray  # (2 N,)
-    axes: np.ndarray  # (LANES, 4 N^2)
+    axes: np.ndarray  # (LANES, 4 N^2), and 4 N more with compliant stops: columns of 2 N, or 2 N + 2 numbers, and
+    ends: np.ndarray  # those of one orbit, of multipliers.py
     beside: np.ndarray  # (LANES, 3, 2 N): of multipliers.py
     matrix: np.ndarray  # (2 N, 2 N)
     paper: series.Workspace | None  # or
@@ -62,6 +63,7 @@ class Workspace(NamedTuple):
 def new_workspace(plan: Plan, cells: int, samples: int, orbits: int = LANES, kind: Kind = PAPER) -> Workspace:
     """Room for points with at most so many cells, and for the records of so many orbits side by side."""
     impacts, states = plan.record if plan.section_side else 0, 2 * kind.masses
+    numbers = states * (states + (2 if kind.compliant else 0))
     ensemble = new_ensemble(cells, kind)
     return Workspace(
         ensemble._replace(records=new_records(orbits, impacts=impacts, samples=samples, masses=kind.masses)),
@@ -70,7 +72,8 @@ def new_workspace(plan: Plan, cells: int, samples: int, orbits: int = LANES, kin
         np.empty((orbits, plan.record if plan.states else 0, states)),
         np.empty((LANES, plan.parts, states)),
         np.empty(states),
-        np.empty((LANES, states**2)),
+        np.empty((LANES, numbers)),
+        np.empty(numbers),
         np.empty((LANES, 3, states)),
         np.empty((states, states)),
         series.new_workspace() if kind.paper else None,

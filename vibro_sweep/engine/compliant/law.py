@@ -69,6 +69,7 @@ def law_of(masses: int) -> np.dtype:
         ("left", float, 2),
         ("cell", np.int64, 2),  # when: cells since t = 0, and
         ("offset", float, 2),
+        ("unit", float, 2),  # of the places of stops that relax at the section (section_vectors.py)
         # of tangent vectors: entries of the matrix of a contact, by (delta, delta' + c delta, w2, ..)
         ("matrix", float, (states, states)),
         ("terms", float, (2, states)),

@@ -31,6 +31,15 @@ def bring_stops(contact, o, k, s, width):
 
 
 @jit
+def place_at(contact, o, n, k, s, width):
+    """Where stop n is at offset s of cell k; 0 where it does not relax."""
+    if not contact.relaxed[n] > 0.0:
+        return 0.0
+    u = (o.period * o.cells + k - contact.cell[n]) * width + (s - contact.offset[n])
+    return relaxed_after(contact, n, u) if u > 0.0 else contact.relaxed[n]
+
+
+@jit
 def relax_by(contact, u, cell, offset):
     """Let stops relax by the time u, which ends there. As the time of a flight it has more digits than times have."""
     for n in range(2):

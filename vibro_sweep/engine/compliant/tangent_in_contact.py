@@ -11,6 +11,7 @@ All have determinant 1. With pi = delta' + c delta in place of delta' only the p
 import math
 
 from vibro_sweep.engine.compliant.law import lane_of
+from vibro_sweep.engine.compliant.relaxing import GONE
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.simd.lanes import alike
 from vibro_sweep.engine.variational.orthonormal import orthonormalise, watch
@@ -43,8 +44,11 @@ def carry_over_contact(t, i, contact, side, w, ended):
             before[1] += d * before[0]
         elif contact.begun == UNRELAXED:
             before[1] += d * (contact.decay * t.places[n * size + j, i])
-        elif contact.begun == RELAXED and contact.touched > 0.0:
-            before[1] -= p / contact.touched * before[0]
+        elif contact.begun == RELAXED:
+            if contact.touched > 0.0:
+                before[1] -= p / contact.touched * before[0]
+            if contact.by_force and p == 0.0:
+                t.forgotten[j, i] += math.log1p(GONE * d * abs(t.places[n * size + j, i]))
         for a in range(size):
             after[a] = 0.0
             for b in range(size):

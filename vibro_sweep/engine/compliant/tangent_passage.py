@@ -1,13 +1,17 @@
 """Tangent vectors through the contacts of eight orbits at once; what touch and release do: tangent_in_contact.py."""
 
+import math
+
 from vibro_sweep.engine.compliant.passage_series import INVERSE, carry_vector, from_contact, of_stop
+from vibro_sweep.engine.compliant.relaxing import GONE
 from vibro_sweep.engine.simd.jit import inline, noinline
-from vibro_sweep.engine.simd.lanes import bits, lanes_of, lowest, select
+from vibro_sweep.engine.simd.lanes import LANES, bits, lanes_of, lowest, number, select
 from vibro_sweep.engine.simd.memory import put, row
 from vibro_sweep.engine.variational.orthonormal import watch
 from vibro_sweep.engine.variational.tangent_flight import apply_flight
 
 HALVINGS = 5  # of the argument of an exponential
+SMALLEST = 1e-15  # what a vector may grow by unseen
 
 
 @inline
@@ -26,6 +30,7 @@ def carry_through_contacts(passage, strikes, t, orbits, passed):
     c, p = of_stop(passage.damping, right), of_stop(passage.preload, right)
     touch, release = p / row(passage.speed, 0), p / row(passage.speed_after, 0)
     by_force, u = of_stop(passage.by_force, right) > 0.0, time / parts
+    forgets, apart = who & by_force & ~(p > 0.0), GONE * c
     apply_flight(t, who)
     closed = who & (row(passage.closed, 0) > 0.0)
     if bits(closed) != 0:
@@ -45,6 +50,9 @@ def carry_through_contacts(passage, strikes, t, orbits, passed):
         put(vector, 1, row(vector, 1) + select(by_force, -c, release) * delta)
         for n in range(len(t.places) // size):
             chosen = who & (right if n == 1 else ~right)
+            if bits(forgets) != 0:
+                jump = apart * abs(row(t.places, n * size + j))
+                forget(t, j, bits(chosen & forgets & (jump > SMALLEST)), jump)
             put(t.places, n * size + j, select(chosen, delta, row(t.places, n * size + j)))
         set_from_contact(passage, t, side, j, who)
     put(t.mixed, 0, select(who, 1.0, row(t.mixed, 0)))
@@ -56,6 +64,14 @@ def carry_through_contacts(passage, strikes, t, orbits, passed):
         crossed = int(passage.crossed[i])
         t.cell[i] = orbits[i].cell + crossed
         t.offset[i] = strikes.offset[i] + passage.time[i] - crossed * strikes.width[i]
+
+
+@noinline
+def forget(t, j, who, jump):
+    """Count how much vector j of these orbits might have grown at a touch of a stop that still moves a little."""
+    for i in range(LANES):
+        if who >> i & 1:
+            t.forgotten[j, i] += math.log1p(number(jump, i))
 
 
 @noinline

@@ -21,6 +21,7 @@ import math
 import numpy as np
 
 from vibro_sweep.engine.compliant.law import begin_beside, end_beside, is_at_rest, keep_between
+from vibro_sweep.engine.compliant.section_vectors import begin_with_places, end_with_places
 from vibro_sweep.engine.motion.orbits import reset_counts, set_state
 from vibro_sweep.engine.motion.together import flight_of, stops_of
 from vibro_sweep.engine.simd.jit import jit, noinline
@@ -55,14 +56,13 @@ def begin_period(e, w, results, which):
             for _ in range(2):  # where rounding alone was left of a vector, it is not at right angles to the others yet
                 orthonormalise(t, only(i))
             tangent.sort_vectors(t, i)
-            for m in range(len(t.Z)):
-                w.axes[i, m] = t.Z[m, i]
             for n in range(len(t.shear)):
                 t.shear[n, i] = 0.0
+            tangent.start_record(t, i)
+            begin_with_places(e.law, t, i, o, flight_of(e, o).oscillator[0].width, w.axes[i], w.matrix)
             if which == BESIDE:
                 step_aside(e, o, w.beside[i, 0], w.state)
             reset_counts(o)
-            tangent.start_record(t, i)
 
 
 @jit
@@ -103,7 +103,9 @@ def read_period(e, w, results, which):
                 largest = max(largest, o.largest[j])
             graze = 2.0**-52 * (omega * largest / o.slowest) ** 2
             off = OFF / ASIDE * math.sqrt(1.0 + o.impacts_left + o.impacts_right)
-            found = find_multipliers(t, i, w.growth[i, 0], w.axes[i], w.matrix, graze, off, result, w.beside[i], which)
+            end_with_places(e.law, t, i, w.ends, w.matrix, w.growth[i, 0])
+            frames = (w.axes[i], w.ends)
+            found = find_multipliers(t, i, w.growth[i, 0], frames, w.matrix, graze, off, result, w.beside[i], which)
             if not (found or which == BESIDE):
                 o.status = status.NOT_FINITE
             if which == AGAIN:
@@ -121,13 +123,13 @@ def find_direction(t, i, axes, direction):
 
 
 @jit
-def product(t, i, axes, row, column):
-    """An entry of U Q_0^T Q_1. axes: columns of Q_0, flat."""
-    total, size = 0.0, len(t.growth)
+def product(t, i, frames, row, column):
+    """An entry of U Q_0^T Q_1. frames: columns of Q_0 and of Q_1, flat."""
+    total, size, (begins, ends) = 0.0, len(t.growth), frames
     for k in range(row, size):
         weight = 1.0 if k == row else t.shear[place_of(size, row, k), i]
-        for m in range(size):
-            total += weight * axes[size * m + k] * t.Z[size * m + column, i]
+        for m in range(0, len(ends), size):
+            total += weight * begins[m + k] * ends[m + column]
     return total
 
 
@@ -146,7 +148,7 @@ def end_of_group(logs, first):
 
 
 @jit
-def find_multipliers(t, i, logs, axes, matrix, graze, off, result, beside, which):
+def find_multipliers(t, i, logs, frames, matrix, graze, off, result, beside, which):
     """Multipliers by falling modulus, of a pair that with Im > 0 first; the logarithms of their moduli, with errors.
 
     graze: what rounding of the state does to the slowest impact, relative to its speed. off: rounding of the orbit over
@@ -160,9 +162,9 @@ def find_multipliers(t, i, logs, axes, matrix, graze, off, result, beside, which
             if which != BESIDE:
                 lose(result, first)
         elif which == BESIDE:
-            if not widen_group(t, i, logs, first, last, axes, matrix, result, beside, off):
+            if not widen_group(t, i, logs, first, last, frames, matrix, result, beside, off):
                 return False
-        elif not find_group(t, i, logs, first, last, axes, matrix, graze, result, beside, which == AGAIN):
+        elif not find_group(t, i, logs, first, last, frames, matrix, graze, result, beside, which == AGAIN):
             return False
         first = last
     return True
@@ -177,12 +179,12 @@ def lose(result, first):
 
 
 @jit
-def find_group(t, i, logs, first, last, axes, matrix, graze, result, beside, again):
+def find_group(t, i, logs, first, last, frames, matrix, graze, result, beside, again):
     """The multipliers of the directions first .. last - 1."""
     re, im, turned = beside[1], beside[2], result.multiplier_error[first:last]
     log, error = result.log_multiplier[first:last], result.log_error[first:last]
     count, scale = last - first, logs[first]
-    size = solve_group(t, i, logs, first, count, axes, matrix, re, im)
+    size = solve_group(t, i, logs, first, count, frames, matrix, re, im)
     if not size < np.inf:
         return False
     for j in range(count):
@@ -213,12 +215,12 @@ def turn(x, y, other_x, other_y):
 
 
 @jit
-def solve_group(t, i, logs, first, count, axes, matrix, re, im):
+def solve_group(t, i, logs, first, count, frames, matrix, re, im):
     """The multipliers of so many directions, in units of exp(logs[first]). Returns the square of the matrix's size."""
     size = 0.0
     for j in range(count):
         for k in range(count):
-            entry = product(t, i, axes, first + j, first + k)
+            entry = product(t, i, frames, first + j, first + k)
             size += entry * entry
             matrix[j, k] = entry * math.exp(0.5 * (logs[first + j] + logs[first + k]) - logs[first])
     if not (size < np.inf and eigenvalues(matrix, count, re, im)):
@@ -228,13 +230,13 @@ def solve_group(t, i, logs, first, count, axes, matrix, re, im):
 
 
 @jit
-def widen_group(t, i, logs, first, last, axes, matrix, result, beside, off):
+def widen_group(t, i, logs, first, last, frames, matrix, result, beside, off):
     """Add what rounding of the orbit does to these multipliers; off: as of `find_multipliers`.
 
     What happens in a period moves the section point of the periodic orbit by (1 - M)^-1 times as much.
     """
     re, im, count = beside[1], beside[2], last - first
-    if not solve_group(t, i, logs, first, count, axes, matrix, re, im) < np.inf:
+    if not solve_group(t, i, logs, first, count, frames, matrix, re, im) < np.inf:
         return False
     apart = 1.0
     for j in range(len(result.multiplier_re)):

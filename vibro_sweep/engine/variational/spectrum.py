@@ -16,6 +16,7 @@ from vibro_sweep.engine.variational.orthonormal import CONDITION
 from vibro_sweep.model import exponents, status
 
 BATCHES = 20  # parts of the recorded time whose scatter gives the error of an exponent
+MOST_FORGOTTEN = 700.0  # as a logarithm, that fits a float
 MOST_CORRELATION = 0.8  # of neighbouring parts, that is allowed for
 
 periods_read = jit(exponents.periods_read)  # after which `carry` reads the growth
@@ -155,6 +156,8 @@ def close_spectrum(e, o, w, plan, point, result):
             error[j] = 0.0
     for j in range(len(spectrum)):
         error[j] += point.rounding if spectrum[j] > -np.inf else 0.0
+    if len(e.tangent[0].forgotten) > 1:
+        widen_forgotten(e.tangent[0], o.lane, result, time)
     exact = divergence_of(point, w.paper, w.other) + o.log_volume / time
     if plan.order == 0:
         left, right = o.impacts_left, o.impacts_right
@@ -177,6 +180,18 @@ def close_spectrum(e, o, w, plan, point, result):
         error[count - 1] = max(error[count - 1], abs(residual))
         if result.period > 0:
             widen_last(result, abs(residual) * time)
+
+
+@jit
+def widen_forgotten(t, i, result, time):
+    """Add what stops that are at rest to rounding might do where contacts shrink vectors by more than that."""
+    spectrum, error = result.lyapunov, result.lyapunov_error
+    for j in range(len(spectrum)):
+        if t.forgotten[j, i] > 0.0 and spectrum[j] > -np.inf:
+            error[j] += t.forgotten[j, i] / time
+            if result.period > 0:
+                most = math.expm1(min(t.forgotten[j, i], MOST_FORGOTTEN))
+                result.multiplier_error[j] += most * math.hypot(result.multiplier_re[j], result.multiplier_im[j])
 
 
 @jit

@@ -60,6 +60,8 @@ def tangents_of(masses: int, paper: bool, compliant: bool = False) -> np.dtype:
         # what each vector does to the place of a stop that was left, on the left and on the right; one row, of which
         # the compiler knows that it is not used, where no stop relaxes
         ("places", float, (2 * n if compliant else 1, LANES)),
+        # by how much, as a logarithm, vectors would grow more at most if stops that are at rest to rounding still moved
+        ("forgotten", float, (n if compliant else 1, LANES)),
         ("wanted", np.bool_),  # else nothing is computed
         ("collected", np.bool_),
         # [1]: whether both numbers of some mode move the gap. Of the paper's oscillator none does: there the field has
@@ -112,6 +114,8 @@ def start_record(t, i):
     """Count growth from here on."""
     for j in range(len(t.growth)):
         t.growth[j, i], t.logs[j, i] = 1.0, 0.0
+    for j in range(len(t.forgotten)):
+        t.forgotten[j, i] = 0.0
 
 
 @jit
