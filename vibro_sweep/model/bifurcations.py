@@ -66,6 +66,9 @@ TYPES = (
     Bifurcation("unrelaxed", "with `release: force` a stop is touched before it has relaxed: no bifurcation",
                 advice="The motion goes on: `simulate` and `sweep` compute it. Branches need stops that are at rest "
                        "again at their next touch."),
+    Bifurcation("permanent_contact", "the contact never ends: the mass no longer leaves its stop",
+                advice="Beyond it the motion is linear, with the stop as one more spring and damper: "
+                       "`simulate` and `sweep` compute it."),
 )  # fmt: skip
 BY_NAME = {one.name: one for one in TYPES}
 CODES = {one.name: code for code, one in enumerate(TYPES)}

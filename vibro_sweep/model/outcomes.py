@@ -27,6 +27,10 @@ ORBITS = {  # `PeriodicOrbit.status`
         "Simulate it (`simulate`, `sweep`), or give the stop less damping: it relaxes like e^(-k_stop t/c_stop), and "
         "has to be at rest to below rounding.",
     ),
+    "permanent_contact": Outcome(
+        "the mass never leaves a compliant stop: its motion is that of a linear oscillator",
+        "`simulate` and `sweep` compute it. A branch of orbits that leave the stop ends where it begins.",
+    ),
     "sticking": Outcome(
         "the orbit rests on a stop after infinitely many impacts: they are not a finite list",
         "Simulate it (`simulate`, `sweep`): rests are computed there. `sticking_onset` says where such rests begin.",
@@ -83,8 +87,16 @@ REASONS = {  # why a point of a sweep lies in no window; 0: it lies in one
         "one of a family of orbits: of a mass that nothing holds, or of a mode without losses in resonance",
         "Windows need isolated orbits: give the mode some damping, or the mass a weak spring.",
     ),
+    "permanent_contact": Outcome(
+        "the mass never leaves a compliant stop: its motion is that of a linear oscillator",
+        "The sweep's own numbers are valid there. A window of orbits that leave the stop ends where it begins.",
+    ),
+    "unrelaxed": Outcome(
+        "a stop is touched before it has relaxed from the contact before",
+        "The sweep's own numbers are valid there; windows need stops that are at rest again at their next touch.",
+    ),
 }
-ATTRACTORS = ("chaos", "quasi_periodic", "sticking")  # reasons that say where an orbit went to
+ATTRACTORS = ("chaos", "quasi_periodic", "sticking", "permanent_contact")  # reasons that say where an orbit went to
 
 EDGES = {  # of a plane between points of different periods: why; what says most comes first
     "curve": Outcome("a curve passes between the two points on which one of their orbits ends or loses its stability"),

@@ -25,6 +25,8 @@ REASON_COLOURS = {
     "failed": "#000000",
     "not_computed": "#f2f2f5",
     "not_isolated": "#f0a030",
+    "permanent_contact": "#7fae7f",
+    "unrelaxed": "#c9a0dc",
 }
 
 

@@ -13,6 +13,7 @@ from vibro_sweep.analysis.branches.crossings import is_torus
 from vibro_sweep.analysis.branches.looking import hidden_between
 from vibro_sweep.analysis.branches.own_birth import before_birth, lands_on_birth, own_birth
 from vibro_sweep.analysis.branches.passed_births import before_passed, how_many_on, passed
+from vibro_sweep.analysis.branches.permanent_contact import permanent_contact
 from vibro_sweep.analysis.branches.special import SpecialPoint, graze_at, is_smooth, vanishing
 from vibro_sweep.analysis.branches.split_contacts import joined_contacts
 from vibro_sweep.analysis.continuation.events import Event, LocatedEvent
@@ -76,7 +77,7 @@ class BranchRun:
                 return
             looked = len(self.rows) - 1
             if reason == stepper.FAILED or a is None or b is None:
-                if self._over_birth(compiled, [self._count()]) or self._join_contacts():
+                if self._over_birth(compiled, [self._count()]) or self._join_contacts() or self._press_for_good():
                     return
                 break
             if reason == stepper.CLOSED:
@@ -88,7 +89,13 @@ class BranchRun:
             if self._pass(a, b, beside=(before, None)):
                 return
             compiled.accept(a, b)
-        self.special.append(self._at("failed", a or self.first, math.nan))
+        self.special.append(self._at("failed", a, math.nan) if a else self._fail_behind_last())
+
+    def _fail_behind_last(self) -> SpecialPoint:
+        """`failed` at the last point, at which no derivatives are known."""
+        s = self._last_solution()
+        at = {self.name: s.family.numbers[self.name]}
+        return SpecialPoint("failed", at, orbit_of(self.system.replace(**at), s), s.multipliers)
 
     def _point_before(self, compiled: CompiledStepper) -> Point | None:
         """The last point of the branch before the place a."""
@@ -111,9 +118,7 @@ class BranchRun:
 
     def _join_contacts(self) -> bool:
         """End where two contacts become one behind the last point. False: there are none."""
-        last = self.points.taken(np.s_[-1:])
-        u = np.concatenate([last.t[0], last.D[0], last.ends[0]])
-        found = joined_contacts(self.curve, replace(self.curve.orbit, family=self.curve.oscillators.at(last.p), u=u))
+        found = joined_contacts(self.curve, self._last_solution())
         if found is None:
             return False
         (_, _, place, error), both = found
@@ -122,6 +127,22 @@ class BranchRun:
         multipliers = place.solution.multipliers
         self.special.append(SpecialPoint("split", {self.name: place.value}, orbit_of(system, both), multipliers, error))
         return True
+
+    def _press_for_good(self) -> bool:
+        """End where a contact never ends behind the last point. False: there is none."""
+        found = permanent_contact(self._last_solution(), self.name, float(self.curve.unit[0]))
+        if found is None:
+            return False
+        self._add_solution(found.value, found.solution)
+        orbit = orbit_of(self.system.replace(**{self.name: found.value}), found.solution)
+        at = {self.name: found.value}
+        self.special.append(SpecialPoint("permanent_contact", at, orbit, found.multipliers, found.error))
+        return True
+
+    def _last_solution(self) -> Solution:
+        last = self.points.taken(np.s_[-1:])
+        u = np.concatenate([last.t[0], last.D[0], last.ends[0]])
+        return replace(self.curve.orbit, family=self.curve.oscillators.at(last.p), u=u)
 
     def _count(self, parts: int | None = None) -> int:
         """Points in the first parts of its rows."""
@@ -170,7 +191,8 @@ class BranchRun:
         ends = ends_between(self.curve, self.bounds, a, b)
         end = first_end(self.curve, ends, a, b)
         if ends and end is None:  # what follows is not a motion
-            self.special.append(self._at("failed", a, math.nan))
+            if not self._press_for_good():
+                self.special.append(self._at("failed", a, math.nan))
             return True
         last = end.place if end else b
         birth = own_birth(self.curve, a, last)

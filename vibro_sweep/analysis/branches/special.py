@@ -20,7 +20,8 @@ from vibro_sweep.model.linear import Linear
 class SpecialPoint:
     """A bifurcation on a branch, or the branch's end.
 
-    type : fold, flip, pitchfork, neimark_sacker, graze, sticking, closed, boundary or failed
+    type : fold, flip, pitchfork, neimark_sacker, graze, sticking, split, permanent_contact, unrelaxed, closed, boundary
+        or failed
     parameters : the number that was followed, by its name
     multipliers : of the map that the type belongs to: the half map with the mirror where the orbit is symmetric
     error : own estimate of the parameter's error: two locations from the two sides differ by less

@@ -128,6 +128,8 @@ def _from_contacts(system, family, simulated, periods) -> PeriodicOrbit:
     events = [(c["t_touch"], c["side"], -c["side"] * c["v_touch"], c["t_release"]) for c in contacts]
     events += [(i["t"], i["side"], -one_plus_R(family.linear, i["side"]) * i["v1"], None) for i in impacts]
     events = sorted((one for one in events if one[0] > simulated.start_time), key=lambda one: one[0])
+    if not events and len(contacts) and np.isnan(contacts["t_release"][-1]):
+        return PeriodicOrbit(system, "permanent_contact")
     events = [one for one in events if one[0] < events[0][0] + P * (1 - 1e-9)]
     rests = tuple(k for k, one in enumerate(events) if one[3] is not None)
     t, sides, D = (tuple(one[i] for one in events) for i in range(3))

@@ -15,7 +15,12 @@ from vibro_sweep.analysis.windows.stretch import representative, stable_stretch
 
 SLACK = 1e-9  # of the range: an orbit that is so far from a window's end may be counted as beyond it
 NEAR = 1e-3  # of the size of the state: a recorded orbit that is farther from the periodic one has not settled
-WITHOUT = {"sticking": "sticking", "resonance": "not_isolated"}  # statuses of orbits that have no window, and why
+WITHOUT = {  # statuses of orbits that have no window, and why
+    "sticking": "sticking",
+    "resonance": "not_isolated",
+    "permanent_contact": "permanent_contact",
+    "unrelaxed": "unrelaxed",
+}
 
 
 class Job(NamedTuple):
