@@ -164,6 +164,19 @@ def test_two_contacts_become_one(numbers, bounds, tmp_path):
         compare(end)
 
 
+@pytest.mark.parametrize("numbers", [1, *slow_cases(4)])
+def test_a_curve_does_not_come_back_where_preload_and_contact_vanish(numbers):
+    """A flip or a fold beside the graze of a soft stop, in the preload: the curve rises from preload = 0 and comes down
+    to 0 where the contact has no length. It was followed back from there."""
+    branch = vs.continue_orbit(vs.periodic_orbit(one_mass(c_stop=0.3, preload=0.0), itinerary="R"), "omega", (0.3, 3))
+    near = branch.special[numbers]
+    assert near.type == ("flip" if numbers == 1 else "fold")
+    curve = vs.bifurcation_curve(near, ("omega", "preload"), ((0.3, 3), (0, 1)))
+    between = [one.type for one in curve.special if one.type not in ("boundary", "failed")]
+    assert between == ["degenerate_flip" if numbers == 1 else "cusp"]
+    assert sum(one.type == "boundary" for one in curve.special) == 1
+
+
 PRESSED = dict(k=1, zeta=0.05, F=0.3, omega=5.5, k_stop=29, c_stop=0.5, b=1, tau=0, constant=1.5, stops="right")
 
 

@@ -21,6 +21,7 @@ from vibro_sweep.model.linear import Family
 LONGEST_STEP, SHORTEST_STEP = 0.05, 1e-11
 STRAIGHT = 0.1  # radians between the tangents of neighbouring points, at most
 BESIDE = 2e-3
+ASIDE = 2.0  # times the distance of two points, how far from the first a point between them may lie
 AT_ONCE = 1024  # points of one call
 
 
@@ -164,11 +165,17 @@ class SolutionCurve:
         return self.correct(guess, self.axis(axis))
 
     def at_value(self, a: Place, b: Place, axis: int, value: float) -> Point | None:
-        """The point between a and b where the parameter `axis` has this value, which lies between theirs."""
+        """The point between a and b where the parameter `axis` has this value, which lies between theirs.
+
+        None where Newton's method finds none, or one that is not between them.
+        """
         change = b.p[axis] - a.p[axis]
         guess = self.between(a, b, (value - a.p[axis]) / change)
         guess.p[axis] = value
-        return self.correct(guess, np.sign(change) * self.axis(axis))
+        found = self.correct(guess, np.sign(change) * self.axis(axis))
+        if found is None or self.distance(a, found) > ASIDE * self.distance(a, b):
+            return None
+        return found
 
     def axis(self, parameter: int) -> np.ndarray:
         """The plane on which a parameter (or theta) is held."""
@@ -224,6 +231,9 @@ class SolutionCurve:
         result.x[:] += share * (b.x - a.x)
         result.p[:] += share * (b.p - a.p)
         return result
+
+    def distance(self, a: Place, b: Place) -> float:
+        return float(np.linalg.norm(self.difference(a, b)))
 
     def difference(self, a: Place, b: Place) -> np.ndarray:
         """The change from a to b, with the entries of `direction`."""

@@ -46,7 +46,7 @@ def crossed(curve: SolutionCurve, a: Place, b: Place, impact: int) -> tuple[floa
     """(share of the secant from a to b, place, error of its parameters) where this impulse vanishes; None where it does
     so at a pole or there are no points beside it."""
     secant = Secant(curve, a, b, lambda place: float(place.jumps[impact]))
-    reach = REACH / float(np.linalg.norm(curve.difference(a, b)))
+    reach = REACH / curve.distance(a, b)
     low, high = secant.test(a), secant.test(b)
     zero = low / (low - high)
     try:

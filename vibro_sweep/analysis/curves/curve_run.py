@@ -314,4 +314,4 @@ def closes(curve: SolutionCurve, a: Place, b: Place, first: Place) -> bool:
     if ends[0] * ends[1] > 0:
         return False
     place = curve.correct(curve.between(a, b, ends[0] / (ends[0] - ends[1])), row)
-    return place is not None and bool(np.linalg.norm(curve.difference(first, place)) < CLOSE)
+    return place is not None and curve.distance(first, place) < CLOSE

@@ -135,7 +135,7 @@ def birth(curve: SolutionCurve, a: Place, b: Place) -> End | None:
     """The end where the orbit of the curve is born between a and b, on the curve of its parent."""
     for sigma, share in turns(*(struck(curve, curve.solution(place)) for place in (a, b))):
         aim = curve.between(a, b, share)
-        end = _first_found(curve, aim, sigma, (np.linalg.norm(curve.difference(a, b)),))
+        end = _first_found(curve, aim, sigma, (curve.distance(a, b),))
         return end and end._replace(share=share)
     return None
 
