@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from mpmath import mp, mpf
-from reference import naive
+from reference import any_naive, naive
 from reference.exponentials import Exponentials
 from reference.flights import Flight, Oscillator, Rest, taylor
 from reference.follow import DIGITS, Follower
@@ -31,10 +31,11 @@ def test_motion_solves_the_equations(params):
     """Closed forms of flight and rest against exponentials of the whole system."""
     o, t, u = Oscillator(params), mpf(2), mpf("0.7")
     with context():
-        slow = naive.Oscillator(params, DIGITS)
-        free, stuck = (mp.matrix([list(map(from_gmp, row)) for row in flow.A]) for flow in (slow.free, slow.stuck))
+        slow = any_naive.Oscillator(naive.linear_of(params), DIGITS)
+        flows = slow.free, slow.constrained
+        free, stuck = (mp.matrix([list(map(from_gmp, row)) for row in flow.A]) for flow in flows)
     turn = o.turn(t)
-    y = mp.matrix([*map(mpf, STATE), turn.imag, turn.real])
+    y = mp.matrix([*map(mpf, STATE), turn.imag, turn.real, 1])
     exact = expm(free * u) * y
     at = Flight(o, t, y[:4]).at(u)
     assert max(abs(at[i] - exact[j]) for i, j in ((0, 0), (1, 1), (3, 2), (4, 3))) < mpf("1e-45")

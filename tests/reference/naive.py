@@ -1,10 +1,4 @@
-"""A slow and obvious simulator of the impact oscillator, which the fast one is held against.
-
-It shares no formula with the package. With y = (x1, v1, x2, v2, sin(omega t + tau), cos(omega t + tau))
-free flight is the autonomous linear system y' = A y, which mpmath carries forward by exp(A h); rest on a stop
-is the same system with the first two rows of A set to zero. A contact is a root of the Taylor polynomial of
-the gap b - side x1, isolated by halving the step until a bound on the polynomial decides. Inside, numbers are those of
-gmpy2.
+"""A slow and obvious simulator of the paper's oscillator, which the fast one is held against: any_naive.py does it.
 
 `python tests/reference/naive.py --write` computes the reference sequences in tests/data/impacts.json anew (minutes).
 """
@@ -14,13 +8,12 @@ import math
 import sys
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
+from types import SimpleNamespace
 from typing import NamedTuple
 
-import gmpy2
 from mpmath import mp, mpf
 
-from reference.gmp import context, dot, expm, from_gmp, to_gmp
-from reference.roots import ZERO, evaluate, falling_root
+from reference import any_naive
 
 REFERENCE = Path(__file__).parents[1] / "data" / "impacts.json"
 NAMES = ("mu_m", "mu_k", "zeta", "f2", "omega", "R", "b", "tau")
@@ -47,163 +40,32 @@ class NaiveOrbit(NamedTuple):
     sticking: list[Sticking]
 
 
-class LinearFlow:
-    """y' = A y over steps of h, with |A| h = 1/2."""
-
-    def __init__(self, A):
-        self.A = A
-        self.rows = [[(a, j) for j, a in enumerate(row) if a] for row in A]  # most entries are zero
-        norm = max(sum(abs(a) for a in row) for row in A)
-        self.h = 1 / (2 * norm)
-        self.growth = gmpy2.exp(norm * self.h)  # |y(u)| <= growth |y(0)| within a step
-        exact = expm(mp.matrix([[from_gmp(a * self.h) for a in row] for row in A]))
-        self.E = [[to_gmp(a) for a in row] for row in exact.tolist()]
-        self.order = 1
-        while mp.ldexp(1, -self.order) / mp.factorial(self.order) > mp.eps / 16:
-            self.order += 1
-
-    def step(self, y):
-        return [dot(row, y) for row in self.E]
-
-    def taylor(self, y):
-        """Coefficients y_n of y(u) = sum of y_n u^n, each a state."""
-        terms = [list(y)]
-        for n in range(1, self.order + 1):
-            last = terms[-1]
-            terms.append([sum((a * last[j] for a, j in row), ZERO) / n for row in self.rows])
-        return terms
-
-
-class Oscillator:
-    """The two flows, the stops, and what happens on them."""
-
-    def __init__(self, params, digits):
-        self.mu_m, self.mu_k, self.zeta, self.f2, self.omega, self.R, self.b, self.tau = (
-            to_gmp(params[name]) for name in NAMES
-        )
-        self.sides = SIDES[params.get("stops", "both")]
-        self.brief = to_gmp(mpf(10) ** (-digits / mpf(2)))
-        o, one, drag, above = ZERO, ZERO + 1, 2 * self.zeta, 1 + self.mu_k
-        M2_forces = [one, drag, -above, -drag * above, self.f2, o]
-        M2_rows = [
-            [o, o, o, one, o, o],
-            [force / self.mu_m for force in M2_forces],
-            [o, o, o, o, o, self.omega],
-            [o, o, o, o, -self.omega, o],
-        ]
-        self.acceleration = [-one, -drag, one, drag, 1 - self.f2, o]  # of M1 in free flight
-        self.free = LinearFlow([[o, one, o, o, o, o], self.acceleration, *M2_rows])
-        self.stuck = LinearFlow([[o] * 6, [o] * 6, *M2_rows])
-        # How far x1 can leave its chord within a step, h^2 / 8 max |x1''|, for |y| = 1 at the step's start.
-        self.bulge = sum(map(abs, self.acceleration)) * self.free.growth * self.free.h**2 / 8
-
-    def gap(self, terms, side):
-        """Taylor coefficients of b - side x1."""
-        c = [-side * term[0] for term in terms]
-        c[0] += self.b
-        return c
-
-    def strike(self, y, side):
-        """Restitution at the stop M1 touches -> (state, leading, delay).
-
-        leading: the order of the first coefficient of the gap afterwards that is not zero.
-        delay: None if M1 leaves; else the time after which it rests, that of the chatter still to come.
-        """
-        y = list(y)
-        if side * y[1] > 0:
-            y[1] *= -self.R
-        gap = self.gap(self.free.taylor(y), side)
-        leading = next(n for n, c in enumerate(gap) if c)
-        speed, pull = gap[1], -2 * gap[2]
-        if gap[leading] < 0:
-            return y, leading, ZERO
-        if pull > 0 and 2 * speed < self.brief * pull * (1 - self.R):
-            y[1] = ZERO
-            return y, 2, 2 * speed / (pull * (1 - self.R))
-        return y, leading, None
-
-    def fly(self, y, touching, leading):
-        """One step, or less up to a contact -> (duration, state, side struck or 0, Taylor terms or None)."""
-        flow = self.free
-        ahead = flow.step(y)
-        bulge = self.bulge * max(map(abs, y))
-        near = [s for s in self.sides if s == touching or max(s * y[0], s * ahead[0]) + bulge >= self.b]
-        if not near:
-            return flow.h, ahead, 0, None
-        terms = flow.taylor(y)
-        contacts = []
-        for side in near:
-            # The zero at u = 0, from which M1 just left, is divided out: it cannot be found again.
-            root = falling_root(self.gap(terms, side)[leading if side == touching else 0 :], ZERO, flow.h)
-            if root is not None:
-                contacts.append((root, side))
-        if not contacts:
-            return flow.h, ahead, 0, terms
-        u, side = min(contacts)
-        at = evaluate(terms, u)
-        at[0] = side * self.b
-        return u, at, side, terms
-
-    def rest(self, y, side, leading):
-        """One step at rest, or less up to the release -> (duration, state, released, Taylor terms)."""
-        terms = self.stuck.taylor(y)
-        pull = [side * dot(self.acceleration, term) for term in terms]
-        u = falling_root(pull[leading:], ZERO, self.stuck.h)
-        if u is None:
-            return self.stuck.h, self.stuck.step(y), False, terms
-        return u, evaluate(terms, u), True, terms
+def linear_of(params):
+    """The paper's oscillator as any other one, in the working precision."""
+    mu_m, mu_k, zeta, f2, omega, R, b, tau = (mpf(params[name]) for name in NAMES)
+    none, K = [mpf(0)] * 2, [[mpf(1), mpf(-1)], [mpf(-1), 1 + mu_k]]
+    sides = SIDES[params.get("stops", "both")]
+    return SimpleNamespace(
+        M=[[mpf(1), mpf(0)], [mpf(0), mu_m]], K=K, C=[[2 * zeta * a for a in row] for row in K],
+        normal=[mpf(1), mpf(0)], sine=[1 - f2, f2], cosine=none, constant=none, omega=omega, tau=tau,
+        low=-b if -1 in sides else -math.inf, high=b if 1 in sides else math.inf, R_low=R, R_high=R,
+    )  # fmt: skip
 
 
 def simulate(params, state, periods=None, impacts=None, start_time=0, digits=40):
     """Orbit over `periods` forcing periods or until `impacts` are listed, whichever comes first.
 
     params: mu_m, mu_k, zeta, f2, omega, R, b, tau (a number) and perhaps stops ("both", "right", "left");
-    floats count as the exact doubles. Chatter is followed impact by impact until what remains of it lasts
-    less than 10^(-digits / 2) and is summed up as a geometric series.
+    floats count as the exact doubles.
     """
-    if periods is None and impacts is None:
-        raise ValueError("say when to stop: periods or impacts")
-    with mp.workdps(digits + 10), context():
-        o = Oscillator(params, digits)
-        t, period = to_gmp(start_time), 2 * gmpy2.const_pi() / o.omega
-        end = gmpy2.inf() if periods is None else t + to_gmp(periods) * period
-        wanted = math.inf if impacts is None else impacts
-        y = [to_gmp(x) for x in state] + [gmpy2.sin(o.omega * t + o.tau), gmpy2.cos(o.omega * t + o.tau)]
-        if any(side * y[0] > o.b for side in o.sides):
-            raise ValueError("the start lies behind a stop")
-        struck = next((side for side in o.sides if y[0] == side * o.b), 0)
-
-        hits, section, sticking = [], [], []
-        next_section = int(gmpy2.ceil(t / period))
-        resting = touching = leading = 0  # the stop M1 rests on, the stop it leaves in this step
-        while t <= end:
-            if struck:
-                if struck * y[1] > 0:
-                    hits.append(Impact(from_gmp(t), struck, *map(from_gmp, y[1:4])))
-                if len(hits) == wanted:
-                    break
-                y, leading, delay = o.strike(y, struck)
-                touching = struck
-                if delay is not None:
-                    resting, t_on, leading = struck, t + delay, leading - 2
-            if resting:
-                u, y_next, released, terms = o.rest(y, resting, leading)
-                struck = 0
-            else:
-                u, y_next, struck, terms = o.fly(y, touching, leading)
-                released = False
-            while next_section * period <= min(t + u, end):
-                terms = terms or o.free.taylor(y)
-                section.append(tuple(map(from_gmp, evaluate(terms, next_section * period - t)[:4])))
-                next_section += 1
-            t, y, touching, leading = t + u, y_next, 0, 0
-            if released:
-                sticking.append(Sticking(from_gmp(t_on), from_gmp(t), resting))
-                # Gap, speed and acceleration are zero at the release, whatever the rounding says.
-                resting, touching, leading = 0, resting, 3
-        if resting:
-            sticking.append(Sticking(from_gmp(t_on), from_gmp(end), resting))
-        return NaiveOrbit(hits, section, sticking)
+    with mp.workdps(digits + 10):
+        q = linear_of(params)
+    hits, sticking, section = any_naive.simulate(q, state, periods, impacts, start_time, digits)
+    return NaiveOrbit(
+        [Impact(hit.t, hit.side, *hit.y[1:]) for hit in hits],
+        [tuple(at) for at in section],
+        [Sticking(*rest) for rest in sticking],
+    )
 
 
 def response(params):
