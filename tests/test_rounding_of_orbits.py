@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from mpmath import log, mp, mpf
-from reference.any_shooting import AnyShooting
+from reference.shooting import AnyShooting
 from support import slow_cases
 
 import vibro_sweep as vs

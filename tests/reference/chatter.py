@@ -9,8 +9,8 @@ series in s, no contact coordinates, no impulses.
 import gmpy2
 from mpmath import exp, findroot, log, mp, mpf, pi, zeros
 
-from reference.any_shooting import AnyShooting
 from reference.gmp import context, dot, from_gmp, to_gmp
+from reference.shooting import AnyShooting
 
 NEAREST = mpf(10) ** -9  # s of the last impact: the parameter's error is its square
 EXTRA = 80  # bits: the gap moves by s^3 only

@@ -4,8 +4,7 @@ from contextlib import contextmanager
 
 import numpy as np
 import pytest
-from reference.any_shooting import AnyShooting
-from reference.shooting import Shooting
+from reference.shooting import AnyShooting, Shooting
 
 import vibro_sweep as vs
 from support.oscillators import PAPER
