@@ -61,12 +61,14 @@ TYPES = (
     Bifurcation("failed", "the branch could not be followed any further",
                 advice="What was computed is valid. Begin from an orbit beyond that place, or go round it in "
                        "another parameter."),
-    Bifurcation("split", "within a contact the mass comes back to its stop: two contacts become one", beyond="split",
+    Bifurcation("split", "within a contact the mass comes back to its stop: two contacts become one",
+                "SC", "split contact", "v", "#8c6d31", beyond="split",
                 advice="Orbits with one contact more, or less, begin there: `switch` or `follow: [split]` finds them."),
     Bifurcation("unrelaxed", "with `release: force` a stop is touched before it has relaxed: no bifurcation",
                 advice="The motion goes on: `simulate` and `sweep` compute it. Branches need stops that are at rest "
                        "again at their next touch."),
     Bifurcation("permanent_contact", "the contact never ends: the mass no longer leaves its stop",
+                "PC", "permanent contact", "P", "#2a7f5f",
                 advice="Beyond it the motion is linear, with the stop as one more spring and damper: "
                        "`simulate` and `sweep` compute it."),
 )  # fmt: skip
