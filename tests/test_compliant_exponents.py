@@ -10,12 +10,13 @@ import sys
 import numpy as np
 import pytest
 from support import compliant_exponents, compliant_sums, slow_cases
+from support.compliant_sums import MOST
 
 import vibro_sweep as vs
 
 ORBITS, RELAXING, PLANES = 200, 300, 200
 WITHIN = 5  # times the stated error
-MOST = 1e-12  # of a residual; the share of contact, a sum of many, is known to less
+LESS = 10  # times: the share of contact, a sum of many, is known to less
 
 
 def hold(reports):
@@ -30,15 +31,16 @@ def test_exponents_of_an_orbit_against_eighty_digits():
     hold([report])
 
 
-@pytest.mark.parametrize("masses, z, k, part, known", [
-    (1, 2, 100, 0.04, True),
-    (1, 1, 10, 0.2, False),
-    *slow_cases((1, 3, 30, 0.1, True), (2, 2, 100, 0.1, True), (2, 3, 30, 0.2, True), (1, 1.5, 10, 0.294, False)),
+@pytest.mark.parametrize("masses, z, k, part", [
+    (1, 2, 100, 0.04),
+    (1, 1, 10, 0.2),
+    *slow_cases((1, 3, 30, 0.1), (2, 2, 100, 0.1), (2, 3, 30, 0.2), (1, 1.5, 10, 0.294)),
 ])  # fmt: skip
-def test_exponents_where_a_contact_shrinks_what_another_stop_keeps(masses, z, k, part, known):
+def test_exponents_where_a_contact_shrinks_what_another_stop_keeps(masses, z, k, part):
     """Both stops are touched while they relax, and contacts shrink vectors to e^-100 that have moved the other stop.
 
-    Not known: a pair of multipliers of which the spectrum, of as many exponents as there are states, has one.
+    Of two of these oscillators the last multiplier is one of a complex pair whose other one is not in the spectrum, of
+    as many exponents as there are states.
     """
     law = dict(k_stop=k, c_stop=2 * z * k**0.5, release="force", stops="both", b=0.5, omega=0.8, zeta=0.03)
     two = vs.System(mu_m=3, mu_k=2, f2=0.4, **law)
@@ -46,8 +48,7 @@ def test_exponents_where_a_contact_shrinks_what_another_stop_keeps(masses, z, k,
     report = compliant_exponents.compared_at([part * vs.grazing(system).b_right], system)
     hold([report])
     assert report.period and report.relaxing
-    assert report.stated[0] < 1e-11
-    assert (report.stated.max() < 1e-11) == known
+    assert report.stated.max() < 1e-11
 
 
 @pytest.mark.slow
@@ -78,13 +79,21 @@ def test_exponents_with_stops_that_are_touched_while_they_relax(count):
 def test_sums_of_exponents(seeds):
     """As they are stored, and as the share of contact and the impacts of the file give them."""
     for report in map(compliant_sums.summed, seeds):
-        assert report.worst < MOST and report.apart < 10 * MOST, report
+        assert report.worst < MOST and report.apart < LESS * MOST, report
+
+
+@pytest.mark.parametrize("count", [1, *slow_cases(20), pytest.param(RELAXING, marks=pytest.mark.soak)])
+def test_sums_with_stops_that_are_touched_while_they_relax(count):
+    """Motion has one multiplier more than states there; where it is one of a pair with the last one both count."""
+    reports = [compliant_sums.summed_relaxing(seed) for seed in range(count)]
+    assert max(worst for _, worst in reports) < 1, reports
+    assert sum(counted for counted, _ in reports) > 40 * count
 
 
 @pytest.mark.soak
 def test_sums_of_two_hundred_planes():
     reports = [compliant_sums.summed(seed) for seed in range(PLANES)]
-    assert max(one.worst for one in reports) < MOST and max(one.apart for one in reports) < 10 * MOST
+    assert max(one.worst for one in reports) < MOST and max(one.apart for one in reports) < LESS * MOST
 
 
 if __name__ == "__main__":

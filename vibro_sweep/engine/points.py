@@ -16,6 +16,7 @@ from vibro_sweep.engine.simd.jit import exported, inline, jit
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.tables import general_tables, series
 from vibro_sweep.engine.variational import tangent
+from vibro_sweep.engine.variational.multipliers import multipliers_of
 from vibro_sweep.model import status
 
 LARGE = 8.0  # clearances that the motion r may measure before flights from a later node are formed without it
@@ -52,10 +53,14 @@ class Workspace(NamedTuple):
     section: np.ndarray  # (orbits, record, 2 N)
     growth: np.ndarray  # (LANES, parts, 2 N)
     state: np.ndarray  # (2 N,)
-    axes: np.ndarray  # (LANES, 4 N^2), and 4 N more with compliant stops: columns of 2 N, or 2 N + 2 numbers, and
-    ends: np.ndarray  # those of one orbit, of multipliers.py
-    beside: np.ndarray  # (LANES, 3, 2 N): of multipliers.py
-    matrix: np.ndarray  # (2 N, 2 N)
+    # of multipliers.py, with n = 2 N vectors of as many numbers, or one more of 2 N + 2 numbers with compliant stops:
+    axes: np.ndarray  # (LANES, vectors * numbers), and
+    ends: np.ndarray  # those of one orbit
+    beside: np.ndarray  # (LANES, 3, n)
+    logs: np.ndarray  # (n,)
+    product: np.ndarray  # (n, n)
+    matrix: np.ndarray  # (n, n)
+    multipliers: np.ndarray  # (LANES,) `multipliers_of`
     paper: series.Workspace | None  # or
     other: general_tables.Workspace | None  # as in point_tables.py
 
@@ -63,7 +68,7 @@ class Workspace(NamedTuple):
 def new_workspace(plan: Plan, cells: int, samples: int, orbits: int = LANES, kind: Kind = PAPER) -> Workspace:
     """Room for points with at most so many cells, and for the records of so many orbits side by side."""
     impacts, states = plan.record if plan.section_side else 0, 2 * kind.masses
-    numbers = states * (states + (2 if kind.compliant else 0))
+    vectors, numbers = (states + 1, states + 2) if kind.compliant else (states, states)
     ensemble = new_ensemble(cells, kind)
     return Workspace(
         ensemble._replace(records=new_records(orbits, impacts=impacts, samples=samples, masses=kind.masses)),
@@ -72,10 +77,13 @@ def new_workspace(plan: Plan, cells: int, samples: int, orbits: int = LANES, kin
         np.empty((orbits, plan.record if plan.states else 0, states)),
         np.empty((LANES, plan.parts, states)),
         np.empty(states),
-        np.empty((LANES, numbers)),
-        np.empty(numbers),
-        np.empty((LANES, 3, states)),
-        np.empty((states, states)),
+        np.empty((LANES, vectors * numbers)),
+        np.empty(vectors * numbers),
+        np.empty((LANES, 3, vectors)),
+        np.empty(vectors),
+        np.empty((vectors, vectors)),
+        np.empty((vectors, vectors)),
+        np.zeros(LANES, multipliers_of(vectors)),
         series.new_workspace() if kind.paper else None,
         None if kind.paper else general_tables.new_workspace(kind.masses, kind.constant),
     )

@@ -96,12 +96,6 @@ def result_of(masses: int) -> np.dtype:
     return np.dtype(
         [
             *fields,
-            (
-                "log_multiplier",
-                float,
-                (2 * masses,),
-            ),  # logarithm of the modulus: of multipliers that floats cannot hold
-            ("log_error", float, (2 * masses,)),  # too; and its error
             ("end", float, (2 * masses,)),  # the state at the last section, and
             ("resting", float),  # the side of the stop that M1 rests on there, or 0
             ("relaxed", float, 2),  # where compliant stops are that relax
@@ -114,8 +108,7 @@ def new_results(shape: tuple[int, ...], masses: int = 2) -> np.ndarray:
     result = np.zeros(1, result_of(masses))
     for one in OF_AN_ORBIT:
         result[one.name] = one.fill
-    for name in ("log_multiplier", "log_error", "end"):
-        result[name] = np.nan
+    result["end"] = np.nan
     return result.repeat(math.prod(shape)).reshape(shape)
 
 

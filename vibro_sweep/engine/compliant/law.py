@@ -69,6 +69,7 @@ def law_of(masses: int) -> np.dtype:
         ("left", float, 2),
         ("cell", np.int64, 2),  # when: cells since t = 0, and
         ("offset", float, 2),
+        ("touched_last", np.int64),  # which of the stops
         ("unit", float, 2),  # of the places of stops that relax at the section (section_vectors.py)
         # of tangent vectors: entries of the matrix of a contact, by (delta, delta' + c delta, w2, ..)
         ("matrix", float, (states, states)),
@@ -78,7 +79,8 @@ def law_of(masses: int) -> np.dtype:
         ("begun", np.int64),  # how they come in (tangent_in_contact.py)
         ("touched", float),  # delta' at the touch
         ("decay", float),  # of what a vector does to a stop that relaxes, since it was left
-        ("solve", float, (states, states + 1)),
+        ("touch", float, (states, states)),  # R, and
+        ("vectors", float, (states, states)),  # Q of the touch of a stop that relaxes
         ("volume", float),  # ln|det| of the jumps of the orbit while another is followed beside it
         # of what is recorded
         ("watched", np.bool_),  # whether the peaks are wanted
@@ -122,7 +124,7 @@ def set_law(law, i, point, q):
         contact.near[n] = NEAR * (abs(point.stops[n]) + q.largest) if contact.compliant[n] else 0.0
         fill_equations(contact.equations[n], point, 2.0 * n - 1.0, n)
     contact.pressed, contact.entered, contact.watched, contact.row = 0.0, False, False, -1
-    contact.close_until = -1
+    contact.close_until, contact.touched_last = -1, 0
     set_passage(law.passage[0], i, contact, point, q)
 
 

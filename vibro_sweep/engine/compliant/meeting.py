@@ -89,6 +89,7 @@ def finish_passage(contact, passage, strikes, o):
     contact.close_until = o.period * o.cells + o.cell + o.cells
     if passage.place[i] > 0.0:
         n = 1 if strikes.side[i] > 0.0 else 0
+        contact.touched_last = n
         contact.left[n] = contact.relaxed[n] = passage.place[i]
         contact.relaxed[n] = relaxed_after(contact, n, passage.rest[i])
         contact.cell[n], contact.offset[n] = o.period * o.cells + o.cell + 1, 0.0

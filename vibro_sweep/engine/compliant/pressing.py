@@ -43,6 +43,7 @@ def begin_contact(law, f, stops, o, t, k, s, side, on_stop):
     contact.relaxed[n] = 0.0
     contact.largest, contact.strongest = -np.inf, -np.inf
     contact.contacts[n] += 1
+    contact.touched_last = n
     o.events += 1
     contact.row = -1
     contact.watched = contact.watched or law.log.shape[1] > 0

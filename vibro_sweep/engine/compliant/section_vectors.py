@@ -7,56 +7,102 @@ state is multiplied by e^100. So multipliers are found from vectors that are ort
     (Z; c P) = E R,    and the growth D U of Z over a period becomes    R_1 D U R_0^-1,    from E_0 to E_1,
 
 with c the speed that a touch at the section would take from the mass for each unit of its place.
+
+The place of the stop that was touched last follows from the state. That of the other one, while it relaxes, is a number
+of its own, and motion has one multiplier more than there are states: to Z comes the vector that moves this stop
+`alone`. The touch of this stop turns it into one that moves the other stop alone (tangent_in_contact.py).
 """
 
 import math
 
+from vibro_sweep.engine.compliant.law import lane_of
 from vibro_sweep.engine.compliant.relaxing import place_at
 from vibro_sweep.engine.simd.jit import inline, jit
-from vibro_sweep.engine.variational.orthonormal import collect, place_of
+from vibro_sweep.engine.variational.orthonormal import collect, columns_of, orthonormalise, place_of
+from vibro_sweep.engine.variational.tangent import log_growth
+from vibro_sweep.engine.variational.tangent_flight import only
 
-TWICE = 2  # Gram-Schmidt, and where little but rounding was left of a vector again
+TWICE = 2  # where rounding alone was left of a vector, it is not at right angles to the others yet
 
 
 @inline
 def begin_with_places(law, t, i, o, width, E, R):
     """Fill E with the vectors with which a period begins, and begin their growth. width: of a cell."""
-    copy_vectors(t, i, E)
     if law is not None:
-        contact, size = law.orbits[i], len(t.growth)
-        if watch_places(contact, o, width) and t.lost[i] == 0.0:
-            orthonormalise_with_places(contact, t, i, E, R)
-            invert(R, size)
-            n = 0
-            for j in range(size):
-                t.logs[j, i] = math.log(R[j, j])
-                for k in range(j + 1, size):
-                    t.shear[n, i] = R[j, k] / R[j, j]
-                    n += 1
+        begin_in_contact(law.orbits[i], t, i, o, width, E, R)
+    else:
+        copy_vectors(t, i, E)
 
 
 @inline
 def end_with_places(law, t, i, E, R, logs):
-    """Fill E with the vectors with which a period ends, and set the logarithms of their growth."""
-    copy_vectors(t, i, E)
+    """Fill E with the vectors with which a period ends, set the logarithms of their growth, and return how many of
+    them have not been lost by then because a stop was relaxed."""
+    count = len(t.growth)
     if law is not None:
-        contact, size = law.orbits[i], len(t.growth)
-        if (contact.unit[0] > 0.0 or contact.unit[1] > 0.0) and t.lost[i] == 0.0:
-            orthonormalise_with_places(contact, t, i, E, R)
-            for j in range(size):
-                for k in range(j + 1, size):
-                    t.normal[place_of(size, j, k), i] = R[j, k] / R[j, j]
-            collect(t, 1 << i)
-            for j in range(size):
-                t.logs[j, i] += math.log(R[j, j])
-                logs[j] = t.logs[j, i] + math.log(t.growth[j, i])
+        count = end_in_contact(law.orbits[i], t, i, E, R)
+    else:
+        copy_vectors(t, i, E)
+    for j in range(len(t.growth)):
+        logs[j] = log_growth(t, j, i)
+    if count > len(t.growth):
+        logs[count - 1] = t.alone[2, i]
+    return count
 
 
-@inline
+@jit
 def copy_vectors(t, i, E):
     """The columns of Z, flat, and after them zeros."""
-    for m in range(len(E)):
-        E[m] = t.Z[m, i] if m < len(t.Z) else 0.0
+    size, columns = len(t.growth), columns_of(t)
+    for m in range(len(E) // columns):
+        for j in range(columns):
+            E[columns * m + j] = t.Z[size * m + j, i] if m < size and j < size else 0.0
+
+
+@jit
+def begin_in_contact(contact, t, i, o, width, E, R):
+    """`begin_with_places` where there are compliant stops."""
+    size, columns = len(t.growth), columns_of(t)
+    for m in range(len(t.alone)):
+        t.alone[m, i] = 0.0
+    if not watch_places(contact, o, width) or t.lost[i] > 0.0:
+        copy_vectors(t, i, E)
+        return
+    last = lane_of(contact.pressed) if contact.pressed != 0.0 else contact.touched_last
+    if contact.unit[1 - last] > 0.0:
+        t.alone[1 - last, i] = 1.0
+    count = orthonormalise_with_places(contact, t, i, E, R)
+    invert(R, count)
+    for j in range(size):
+        t.logs[j, i] = math.log(R[j, j])
+        for k in range(j + 1, count):
+            t.shear[place_of(columns, j, k), i] = R[j, k] / R[j, j]
+    if count > size:
+        t.alone[2, i] = math.log(R[size, size])
+
+
+@jit
+def end_in_contact(contact, t, i, E, R):
+    """`end_with_places` where there are compliant stops."""
+    size, columns = len(t.growth), columns_of(t)
+    if not (contact.unit[0] > 0.0 or contact.unit[1] > 0.0) or t.lost[i] > 0.0:
+        copy_vectors(t, i, E)
+        return size
+    for _ in range(TWICE):
+        orthonormalise(t, only(i))
+    count = orthonormalise_with_places(contact, t, i, E, R)
+    for j in range(size):
+        for k in range(j + 1, size):
+            t.normal[place_of(size, j, k), i] = R[j, k] / R[j, j]
+    collect(t, 1 << i)
+    for j in range(size):
+        if count > size:
+            along = R[j, size] / R[j, j] * math.exp(t.alone[2, i] - log_growth(t, j, i))
+            t.shear[place_of(columns, j, size), i] += along
+        t.logs[j, i] += math.log(R[j, j])
+    if count > size:
+        t.alone[2, i] += math.log(R[size, size])
+    return count
 
 
 @jit
@@ -72,26 +118,55 @@ def watch_places(contact, o, width):
 
 @jit
 def orthonormalise_with_places(contact, t, i, E, R):
-    """E R of the vectors in E and what they do to the places."""
-    size = len(t.growth)
-    for n in range(2):
-        for j in range(size):
-            E[size * (size + n) + j] = contact.unit[n] * t.places[size * n + j, i]
+    """Fill E and R: E R of the vectors Z, orthonormal, and what they do to the places; and of the one that moves a stop
+    alone, if there is one. Returns how many there are.
+
+    Rotations take the row of one place after the other up into R, which begins as 1 with Z in E. The last column of E
+    is at right angles to all others then. Of the row of the `free` stop it is a tangent vector of the motion, too.
+    """
+    size, columns = len(t.growth), columns_of(t)
+    free = 0 if t.alone[0, i] != 0.0 else 1
     for j in range(size):
+        for m in range(len(E) // columns):
+            E[columns * m + j] = 1.0 if m == j else 0.0
         for k in range(size):
-            R[k, j] = 0.0
-        for _ in range(TWICE):
-            for k in range(j):
-                along = 0.0
-                for m in range(k, len(E), size):
-                    along += E[m] * E[m - k + j]
-                R[k, j] += along
-                for m in range(k, len(E), size):
-                    E[m - k + j] -= along * E[m]
-        for m in range(j, len(E), size):
-            R[j, j] = math.hypot(R[j, j], E[m])
-        for m in range(j, len(E), size):
-            E[m] /= R[j, j]
+            R[j, k] = 1.0 if j == k else 0.0
+    for n in (1 - free, free):
+        for m in range(len(E) // columns):
+            E[columns * m + size] = 1.0 if m == size + n else 0.0
+        for j in range(size):
+            R[size, j] = contact.unit[n] * t.places[size * n + j, i]
+        for j in range(size):
+            if R[size, j] != 0.0:
+                rotate_up(E, R, j, columns)
+    place = columns * (size + free)
+    for j in range(columns):
+        R[j, size], R[size, j] = contact.unit[free] * t.alone[free, i] * E[place + j], 0.0
+    R[size, size] = contact.unit[free] * E[place + size]
+    for j in range(columns):
+        for m in range(size):
+            contact.before[m] = 0.0
+            for k in range(size):
+                contact.before[m] += t.Z[size * m + k, i] * E[columns * k + j]
+        for m in range(size):
+            E[columns * m + j] = contact.before[m]
+    for m in range(size, len(E), columns):
+        E[m] *= t.alone[free, i]
+    return columns if R[size, size] * t.alone[free, i] != 0.0 else size
+
+
+@jit
+def rotate_up(E, R, j, columns):
+    """Rotate entry j of the last row of R into its diagonal, and the columns of E with it."""
+    last, x = columns - 1, R[j, j]
+    length = math.hypot(x, R[last, j])
+    cos, sin = x / length, R[last, j] / length
+    for k in range(j, last):
+        x, y = R[j, k], R[last, k]
+        R[j, k], R[last, k] = cos * x + sin * y, cos * y - sin * x
+    for m in range(0, len(E), columns):
+        x, y = E[m + j], E[m + last]
+        E[m + j], E[m + last] = cos * x + sin * y, cos * y - sin * x
 
 
 @jit

@@ -54,6 +54,7 @@ def carry_through_contacts(passage, strikes, t, orbits, passed):
                 jump = apart * abs(row(t.places, n * size + j))
                 forget(t, j, bits(chosen & forgets & (jump > SMALLEST)), jump)
             put(t.places, n * size + j, select(chosen, delta, row(t.places, n * size + j)))
+            put(t.alone, n, select(chosen, 0.0, row(t.alone, n)))
         set_from_contact(passage, t, side, j, who)
     put(t.mixed, 0, select(who, 1.0, row(t.mixed, 0)))
     watch(t, who, exponential(of_stop(passage.trace, right) * time))

@@ -27,16 +27,25 @@ from vibro_sweep.engine.motion.together import flight_of, stops_of
 from vibro_sweep.engine.simd.jit import jit, noinline
 from vibro_sweep.engine.variational import tangent
 from vibro_sweep.engine.variational.eigenvalues import eigenvalues
-from vibro_sweep.engine.variational.orthonormal import CONDITION, orthonormalise, place_of
+from vibro_sweep.engine.variational.orthonormal import CONDITION, columns_of, orthonormalise, place_of
 from vibro_sweep.engine.variational.tangent_flight import only
 from vibro_sweep.model import status
 
 RANGE = 350.0  # of the logarithms of growths that one matrix of floats can hold, and products of two of its entries
 APART = 37.0  # logarithm of what is beyond rounding
+TURNED = 1e-13  # what vectors have found their directions better than, unless they turn for ever
 NEAREST = 1e-6  # to 1, that r is taken to be at most: REPEAT distinguishes no slower approach
 FIRST, AGAIN, BESIDE = range(3)  # the periods
 ASIDE = 1e4  # units of rounding of the state by which the third begins beside the orbit, and
 OFF = 16.0  # by how many of them rounding at one impact moves the orbit; that at others has nothing to do with it
+
+
+def multipliers_of(count: int) -> np.dtype:
+    """The record of so many multipliers of an orbit, by falling modulus."""
+    fields = [(name, float, (count,)) for name in ("re", "im", "error", "log", "log_error")]  # log: of the modulus
+    # how many were sought; and of the one beyond as many as there are states its `log` without the growth of the vector
+    # that moves a stop alone
+    return np.dtype([*fields, ("count", np.int64), ("beyond", float)])
 
 
 @jit
@@ -68,8 +77,8 @@ def begin_period(e, w, results, which):
 @jit
 def step_aside(e, o, direction, state):
     """Move the orbit by `ASIDE` units of its rounding in this direction of the frame of tangent vectors."""
-    t, f, size = e.tangent[0], flight_of(e, o), len(direction)
-    omega, stops, largest, longest = f.oscillator[0].omega, stops_of(o), 0.0, 0.0
+    t, f, stops = e.tangent[0], flight_of(e, o), stops_of(o)
+    size, omega, largest, longest = len(t.growth), f.oscillator[0].omega, 0.0, 0.0
     for m in range(size):
         unit = omega if m % 2 == 1 else 1.0
         state[m] = 0.0
@@ -90,9 +99,8 @@ def step_aside(e, o, direction, state):
 def read_period(e, w, results, which):
     """The multipliers over the first of three periods; with their errors over the next; and what the last adds."""
     t = e.tangent[0]
-    t.collected = False
     for i in range(len(results)):
-        o, result = e.orbits[i], results[i]
+        o = e.orbits[i]
         if which == BESIDE and o.periods > 0:
             end_beside(e.law, o)
             if o.status != status.OK:
@@ -103,34 +111,65 @@ def read_period(e, w, results, which):
                 largest = max(largest, o.largest[j])
             graze = 2.0**-52 * (omega * largest / o.slowest) ** 2
             off = OFF / ASIDE * math.sqrt(1.0 + o.impacts_left + o.impacts_right)
-            end_with_places(e.law, t, i, w.ends, w.matrix, w.growth[i, 0])
-            frames = (w.axes[i], w.ends)
-            found = find_multipliers(t, i, w.growth[i, 0], frames, w.matrix, graze, off, result, w.beside[i], which)
-            if not (found or which == BESIDE):
+            known, found = end_with_places(e.law, t, i, w.ends, w.matrix, w.logs), w.multipliers[i]
+            count = known
+            if which == BESIDE:
+                count = min(count, found.count)
+            elif count > len(t.growth) and not has_turned(t, w.axes[i], w.ends):
+                count = len(t.growth)
+            set_product(t, i, w.axes[i], w.ends, count, w.product)
+            solved = find_multipliers(w.product, w.logs[:count], w.matrix, graze, off, found, w.beside[i], which)
+            if not (solved or which == BESIDE):
                 o.status = status.NOT_FINITE
+            if which != BESIDE:
+                found.count, found.beyond = count, 0.0
+                if known > len(t.growth):
+                    last = known - 1
+                    found.beyond = (found.log[last] if count == known else w.logs[last]) - t.alone[3, i]
             if which == AGAIN:
                 find_direction(t, i, w.axes[i], w.beside[i, 0])
+    t.collected = False
 
 
 @jit
 def find_direction(t, i, axes, direction):
     """The first row of U Q_0^T."""
-    size = len(direction)
-    for m in range(size):
-        direction[m] = axes[size * m]
-        for k in range(1, size):
-            direction[m] += t.shear[place_of(size, 0, k), i] * axes[size * m + k]
+    columns = columns_of(t)
+    for m in range(len(t.growth)):
+        direction[m] = axes[columns * m]
+        for k in range(1, columns):
+            direction[m] += t.shear[place_of(columns, 0, k), i] * axes[columns * m + k]
 
 
 @jit
-def product(t, i, frames, row, column):
-    """An entry of U Q_0^T Q_1. frames: columns of Q_0 and of Q_1, flat."""
-    total, size, (begins, ends) = 0.0, len(t.growth), frames
-    for k in range(row, size):
-        weight = 1.0 if k == row else t.shear[place_of(size, row, k), i]
-        for m in range(0, len(ends), size):
-            total += weight * begins[m + k] * ends[m + column]
-    return total
+def has_turned(t, begins, ends):
+    """Whether the vectors span other directions than a period ago, as where their last multiplier is one of a complex
+    pair: then the vector that moves a stop alone, the last one, has to be counted. begins, ends: as of `set_product`.
+    """
+    size, columns = len(t.growth), columns_of(t)
+    for j in range(size):
+        for row in range(0, len(ends), columns):
+            apart = ends[row + j]
+            for k in range(size):
+                for m in range(0, len(ends), columns):
+                    apart -= begins[row + k] * begins[m + k] * ends[m + j]
+            if abs(apart) > TURNED:
+                return True
+    return False
+
+
+@jit
+def set_product(t, i, begins, ends, count, product):
+    """U Q_0^T Q_1 of so many vectors. begins, ends: columns of Q_0 and of Q_1, flat."""
+    columns = columns_of(t)
+    for row in range(count):
+        for column in range(count):
+            total = 0.0
+            for k in range(row, count):
+                weight = 1.0 if k == row else t.shear[place_of(columns, row, k), i]
+                for m in range(0, len(ends), columns):
+                    total += weight * begins[m + k] * ends[m + column]
+            product[row, column] = total
 
 
 @jit
@@ -148,59 +187,59 @@ def end_of_group(logs, first):
 
 
 @jit
-def find_multipliers(t, i, logs, frames, matrix, graze, off, result, beside, which):
+def find_multipliers(product, logs, matrix, graze, off, found, beside, which):
     """Multipliers by falling modulus, of a pair that with Im > 0 first; the logarithms of their moduli, with errors.
 
     graze: what rounding of the state does to the slowest impact, relative to its speed. off: rounding of the orbit over
-    how far it began beside it. beside (3, 2 N): scratch.
+    how far it began beside it. beside (3, n): scratch.
     """
     first = 0
     while first < len(logs):
         last = end_of_group(logs, first)
         if last == first:
-            last = len(logs)
-            if which != BESIDE:
-                lose(result, first)
-        elif which == BESIDE:
-            if not widen_group(t, i, logs, first, last, frames, matrix, result, beside, off):
+            break
+        if which == BESIDE:
+            if not widen_group(product, logs, first, last, matrix, found, beside, off):
                 return False
-        elif not find_group(t, i, logs, first, last, frames, matrix, graze, result, beside, which == AGAIN):
+        elif not find_group(product, logs, first, last, matrix, graze, found, beside, which == AGAIN):
             return False
         first = last
+    if which != BESIDE:
+        lose(found, first)
     return True
 
 
 @jit
-def lose(result, first):
+def lose(found, first):
     """The directions from `first` on are lost."""
-    for j in range(first, len(result.log_multiplier)):
-        result.multiplier_re[j] = result.multiplier_im[j] = result.multiplier_error[j] = 0.0
-        result.log_multiplier[j], result.log_error[j] = -np.inf, 0.0
+    for j in range(first, len(found.log)):
+        found.re[j] = found.im[j] = found.error[j] = found.log_error[j] = 0.0
+        found.log[j] = -np.inf
 
 
 @jit
-def find_group(t, i, logs, first, last, frames, matrix, graze, result, beside, again):
+def find_group(product, logs, first, last, matrix, graze, found, beside, again):
     """The multipliers of the directions first .. last - 1."""
-    re, im, turned = beside[1], beside[2], result.multiplier_error[first:last]
-    log, error = result.log_multiplier[first:last], result.log_error[first:last]
+    re, im, turned = beside[1], beside[2], found.error[first:last]
+    log, error = found.log[first:last], found.log_error[first:last]
     count, scale = last - first, logs[first]
-    size = solve_group(t, i, logs, first, count, frames, matrix, re, im)
+    size = solve_group(product, logs, first, count, matrix, re, im)
     if not size < np.inf:
         return False
     for j in range(count):
         before = log[j]
         log[j] = math.log(math.hypot(re[j], im[j])) + scale
         error[j] = abs(log[j] - before) if again else 0.0
-        turned[j] = turn(re[j], im[j], result.multiplier_re[first + j], result.multiplier_im[first + j])
+        turned[j] = turn(re[j], im[j], found.re[first + j], found.im[first + j])
     if again:
-        r = min(math.exp(result.log_multiplier[0]), 1.0 - NEAREST)
+        r = min(math.exp(found.log[0]), 1.0 - NEAREST)
         for j in range(count):
             known = (graze + 2.0**-52 * CONDITION * math.sqrt(size)) * condition(re, im, count, j)
             error[j] = error[j] * max(1.0, r / (1.0 - r)) + min(known, math.sqrt(2.0**-52 * CONDITION))
             turned[j] *= max(1.0, r / (1.0 - r))
     for j in range(count):
         x, y = re[j] * math.exp(scale), im[j] * math.exp(scale)
-        result.multiplier_re[first + j], result.multiplier_im[first + j] = x, y
+        found.re[first + j], found.im[first + j] = x, y
         turned[j] = (error[j] + turned[j]) * math.hypot(x, y)
     return True
 
@@ -215,12 +254,12 @@ def turn(x, y, other_x, other_y):
 
 
 @jit
-def solve_group(t, i, logs, first, count, frames, matrix, re, im):
+def solve_group(product, logs, first, count, matrix, re, im):
     """The multipliers of so many directions, in units of exp(logs[first]). Returns the square of the matrix's size."""
     size = 0.0
     for j in range(count):
         for k in range(count):
-            entry = product(t, i, frames, first + j, first + k)
+            entry = product[first + j, first + k]
             size += entry * entry
             matrix[j, k] = entry * math.exp(0.5 * (logs[first + j] + logs[first + k]) - logs[first])
     if not (size < np.inf and eigenvalues(matrix, count, re, im)):
@@ -230,28 +269,28 @@ def solve_group(t, i, logs, first, count, frames, matrix, re, im):
 
 
 @jit
-def widen_group(t, i, logs, first, last, frames, matrix, result, beside, off):
+def widen_group(product, logs, first, last, matrix, found, beside, off):
     """Add what rounding of the orbit does to these multipliers; off: as of `find_multipliers`.
 
     What happens in a period moves the section point of the periodic orbit by (1 - M)^-1 times as much.
     """
     re, im, count = beside[1], beside[2], last - first
-    if not solve_group(t, i, logs, first, count, frames, matrix, re, im) < np.inf:
+    if not solve_group(product, logs, first, count, matrix, re, im) < np.inf:
         return False
     apart = 1.0
-    for j in range(len(result.multiplier_re)):
-        apart = min(apart, math.hypot(1.0 - result.multiplier_re[j], result.multiplier_im[j]))
+    for j in range(len(found.re)):
+        apart = min(apart, math.hypot(1.0 - found.re[j], found.im[j]))
     part = off / max(apart, NEAREST)
     for j in range(count):
         n = first + j
-        old, modulus = result.log_multiplier[n], math.hypot(result.multiplier_re[n], result.multiplier_im[n])
+        old, modulus = found.log[n], math.hypot(found.re[n], found.im[n])
         if old == -np.inf or re[j] == im[j] == 0.0:
             continue
         unit = math.exp(logs[first] - old)
-        result.log_error[n] += part * abs(math.log(unit * math.hypot(re[j], im[j])))
+        found.log_error[n] += part * abs(math.log(unit * math.hypot(re[j], im[j])))
         if modulus > 0.0:
-            x, y = result.multiplier_re[n] / modulus, result.multiplier_im[n] / modulus
-            result.multiplier_error[n] += part * modulus * math.hypot(unit * re[j] - x, unit * im[j] - y)
+            x, y = found.re[n] / modulus, found.im[n] / modulus
+            found.error[n] += part * modulus * math.hypot(unit * re[j] - x, unit * im[j] - y)
     return True
 
 

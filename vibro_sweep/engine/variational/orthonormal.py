@@ -41,6 +41,12 @@ def watch(t, who, determinant):
 def orthonormalise(t, who):
     """Gram-Schmidt: Z = Q R, Z becomes Q and the diagonal of R is added to the growth."""
     orthogonalise(t, who)
+    count_growth(t, who)
+
+
+@inline
+def count_growth(t, who):
+    """Count the growth of vectors that have become those of Q of Q R; of R there are `square_length` and `normal`."""
     combine_places(t, who)
     if t.collected:
         collect(t, bits(who))
@@ -65,6 +71,12 @@ def combine_places(t, who):
                 for i in range(size):
                     square = t.square_length[i, lane]
                     t.places[m + i, lane] = t.places[m + i, lane] / math.sqrt(square) if square > 0.0 else 0.0
+
+
+@inline
+def columns_of(t):
+    """How many vectors there are at most: as many as states, and with compliant stops one more."""
+    return len(t.growth) + len(t.alone) // 4
 
 
 @inline
@@ -121,16 +133,16 @@ def collect(t, who):
     for lane in range(LANES):
         if not who >> lane & 1:
             continue
-        n, size = 0, len(t.growth)
+        n, size, columns = 0, len(t.growth), columns_of(t)
         for i in range(size - 1):
-            for j in range(i + 1, size):
+            for j in range(i + 1, columns):
                 # rows k > i have not changed yet
                 total = t.shear[n, lane]
-                for k in range(i + 1, j + 1):
+                for k in range(i + 1, min(j + 1, size)):
                     d_i, d_k = t.growth[i, lane], t.growth[k, lane]
                     if d_i > 0.0 and t.logs[i, lane] > -np.inf:  # a lost direction has no row
                         ratio = d_k / d_i * math.exp(t.logs[k, lane] - t.logs[i, lane])
-                        later = t.shear[place_of(size, k, j), lane] if k < j else 1.0
+                        later = t.shear[place_of(columns, k, j), lane] if k < j else 1.0
                         total += t.normal[place_of(size, i, k), lane] * ratio * later
                 t.shear[n, lane] = total
                 n += 1

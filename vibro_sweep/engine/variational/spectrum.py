@@ -146,10 +146,14 @@ def close_spectrum(e, o, w, plan, point, result):
     and of the last multiplier's."""
     q, spectrum, error = e.flights.oscillator[o.table, 0], result.lyapunov, result.lyapunov_error
     periods = result.period if result.period > 0 else w.section.shape[1]
-    time = periods * period_of(e, o)
+    time, beyond = periods * period_of(e, o), 0.0
     if result.period > 0:
+        found = w.multipliers[o.lane]
+        beyond = found.beyond / time
         for j in range(len(spectrum)):
-            spectrum[j], error[j] = result.log_multiplier[j] / time, result.log_error[j] / time
+            spectrum[j], error[j] = found.log[j] / time, found.log_error[j] / time
+            result.multiplier_re[j], result.multiplier_im[j] = found.re[j], found.im[j]
+            result.multiplier_error[j] = found.error[j]
     if is_free(o, plan) and keeps_energy(q) and spectrum[0] == spectrum[0]:
         real_parts(q, spectrum)
         for j in range(len(spectrum)):
@@ -171,7 +175,7 @@ def close_spectrum(e, o, w, plan, point, result):
     count, total = len(spectrum), spectrum[0] + spectrum[1]
     for j in range(2, count, 2):
         total += spectrum[j] + spectrum[j + 1]
-    residual = total - exact
+    residual = total + beyond - exact
     for j in range(count - q.vanishing, count):
         spectrum[j], error[j], residual = -np.inf, 0.0, -np.inf
         result.multiplier_re[j] = result.multiplier_im[j] = result.multiplier_error[j] = 0.0
@@ -199,7 +203,7 @@ def widen_last(result, part):
     """The smallest multiplier, and its conjugate, are not known to better than this part of it."""
     re, im, error = result.multiplier_re, result.multiplier_im, result.multiplier_error
     last = len(re) - 1
-    for j in range(last - 1 if im[last] != 0.0 else last, last + 1):
+    for j in range(last - 1 if im[last] < 0.0 else last, last + 1):
         error[j] = max(error[j], part * math.hypot(re[j], im[j]))
 
 

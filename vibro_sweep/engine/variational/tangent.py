@@ -27,7 +27,7 @@ def tangents_of(masses: int, paper: bool, compliant: bool = False) -> np.dtype:
     paper : its oscillator, whose modes move the gap by their first numbers alone: kernels for it do not ask
     """
     n = 2 * masses
-    pairs = n * (n - 1) // 2
+    pairs, apart = n * (n - 1) // 2, n if compliant else 0
     fields = [
         # of the oscillator
         ("series", float, (n * ORDER, LANES)),
@@ -56,10 +56,14 @@ def tangents_of(masses: int, paper: bool, compliant: bool = False) -> np.dtype:
         ("logs", float, (n, LANES)),  # their logarithms, taken before they leave the range of the floats
         ("square_length", float, (n, LANES)),  # squares of the diagonal of R in the last Z = Q R, and
         ("normal", float, (pairs, LANES)),  # what stands beside it, over it, row by row: 01, 02, 03, 12, 13, 23;
-        ("shear", float, (pairs, LANES)),  # the same of the product of all R, where they are `collected`
+        # the same of the product of all R, where they are `collected`; and beside each row what the vector `alone` adds
+        ("shear", float, (pairs + apart, LANES)),
         # what each vector does to the place of a stop that was left, on the left and on the right; one row, of which
         # the compiler knows that it is not used, where no stop relaxes
         ("places", float, (2 * n if compliant else 1, LANES)),
+        # of the vector that moves a stop alone (section_vectors.py) the places of both, and as logarithms its growth
+        # with the other vectors and without them
+        ("alone", float, (4 if compliant else 1, LANES)),
         # by how much, as a logarithm, vectors would grow more at most if stops that are at rest to rounding still moved
         ("forgotten", float, (n if compliant else 1, LANES)),
         ("wanted", np.bool_),  # else nothing is computed
@@ -104,6 +108,8 @@ def begin(t, i):
         t.flight[m, i] = 1.0 - m % 2
     for m in range(len(t.places)):
         t.places[m, i] = 0.0
+    for m in range(len(t.alone)):
+        t.alone[m, i] = 0.0
     t.lost[i], t.volume[i], t.offset[i], t.mixed[i] = 0.0, 1.0, 0.0, 0.0
     t.cell[i] = t.flown[i] = 0
     start_record(t, i)
