@@ -52,6 +52,15 @@ def test_exponents_where_a_contact_shrinks_what_another_stop_keeps(masses, z, k,
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("seed", [105, 19, 127])
+def test_exponents_where_vectors_find_no_directions(seed):
+    """Of five multipliers three have nearly one modulus, or the orbit has only just found its period."""
+    report = compliant_exponents.compared_relaxing(seed)
+    hold([report])
+    assert report.period and report.stated.max() < 1e-9
+
+
+@pytest.mark.slow
 def test_exponents_of_twenty_orbits(capsys):
     reports = [compliant_exponents.compared(seed) for seed in range(22)]
     with capsys.disabled():

@@ -174,8 +174,8 @@ def invert(R, size):
     """R^-1 in place of an upper triangular matrix R."""
     for j in range(size):
         R[j, j] = 1.0 / R[j, j]
-        for k in range(j - 1, -1, -1):
+        for k in range(j):
             total = 0.0
-            for m in range(k + 1, j + 1):
+            for m in range(k, j):
                 total += R[k, m] * R[m, j]
-            R[k, j] = -R[k, k] * total
+            R[k, j] = -R[j, j] * total
