@@ -15,7 +15,8 @@ from vibro_sweep.engine.point_tables import to_masses
 from vibro_sweep.engine.simd.jit import inline, jit, noinline
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.simd.memory import put
-from vibro_sweep.engine.variational.multipliers import BESIDE, begin_period, read_period
+from vibro_sweep.engine.variational.multiplier_groups import BESIDE
+from vibro_sweep.engine.variational.multipliers import begin_period, read_period
 from vibro_sweep.engine.variational.spectrum import (
     begin_warm_up,
     close_spectrum,

@@ -16,7 +16,7 @@ from vibro_sweep.engine.simd.jit import exported, inline, jit
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.tables import general_tables, series
 from vibro_sweep.engine.variational import tangent
-from vibro_sweep.engine.variational.multipliers import multipliers_of
+from vibro_sweep.engine.variational.multiplier_groups import multipliers_of
 from vibro_sweep.model import status
 
 LARGE = 8.0  # clearances that the motion r may measure before flights from a later node are formed without it

@@ -122,21 +122,20 @@ class BranchRun:
         if found is None:
             return False
         (_, _, place, error), both = found
-        self._add_solution(place.value, both)
-        system = self.system.replace(**{self.name: place.value})
-        multipliers = place.solution.multipliers
-        self.special.append(SpecialPoint("split", {self.name: place.value}, orbit_of(system, both), multipliers, error))
-        return True
+        return self._end_behind("split", place.value, both, place.solution.multipliers, error)
 
     def _press_for_good(self) -> bool:
         """End where a contact never ends behind the last point. False: there is none."""
         found = permanent_contact(self._last_solution(), self.name, float(self.curve.unit[0]))
         if found is None:
             return False
-        self._add_solution(found.value, found.solution)
-        orbit = orbit_of(self.system.replace(**{self.name: found.value}), found.solution)
-        at = {self.name: found.value}
-        self.special.append(SpecialPoint("permanent_contact", at, orbit, found.multipliers, found.error))
+        return self._end_behind("permanent_contact", found.value, found.solution, found.multipliers, found.error)
+
+    def _end_behind(self, of_type: str, value: float, s: Solution, multipliers: np.ndarray, error: float) -> bool:
+        """End at an orbit beyond the last point that the equations of the branch reach."""
+        self._add_solution(value, s)
+        at = {self.name: value}
+        self.special.append(SpecialPoint(of_type, at, orbit_of(self.system.replace(**at), s), multipliers, error))
         return True
 
     def _last_solution(self) -> Solution:
