@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.branch_events import bifurcations, ends_between, first_end
+from vibro_sweep.analysis.branches.branch_events import SPLIT, bifurcations, ends_between, first_end
 from vibro_sweep.analysis.branches.compiled_stepper import CompiledStepper, row_of
 from vibro_sweep.analysis.branches.criticality import criticality
 from vibro_sweep.analysis.branches.crossings import is_torus
@@ -77,7 +77,9 @@ class BranchRun:
                 return
             looked = len(self.rows) - 1
             if reason == stepper.FAILED or a is None or b is None:
-                if self._over_birth(compiled, [self._count()]) or self._join_contacts() or self._press_for_good():
+                if self._over_birth(compiled, [self._count()]) or self._join_contacts():
+                    return
+                if self._press_for_good(self._last_solution()):
                     return
                 break
             if reason == stepper.CLOSED:
@@ -124,9 +126,9 @@ class BranchRun:
         (_, _, place, error), both = found
         return self._end_behind("split", place.value, both, place.solution.multipliers, error)
 
-    def _press_for_good(self) -> bool:
-        """End where a contact never ends behind the last point. False: there is none."""
-        found = permanent_contact(self._last_solution(), self.name, float(self.curve.unit[0]))
+    def _press_for_good(self, s: Solution) -> bool:
+        """End where a contact never ends, beside this orbit. False: there is none."""
+        found = permanent_contact(s, self.name, float(self.curve.unit[0]))
         if found is None:
             return False
         return self._end_behind("permanent_contact", found.value, found.solution, found.multipliers, found.error)
@@ -190,7 +192,7 @@ class BranchRun:
         ends = ends_between(self.curve, self.bounds, a, b)
         end = first_end(self.curve, ends, a, b)
         if ends and end is None:  # what follows is not a motion
-            if not self._press_for_good():
+            if not self._press_for_good(self._last_solution()):
                 self.special.append(self._at("failed", a, math.nan))
             return True
         last = end.place if end else b
@@ -220,6 +222,9 @@ class BranchRun:
             return True
         if birth:
             self._birth(birth)
+            return True
+        # a mass that leaves its stop only just before it is back is at rest there within that contact, too
+        if end and end.event is SPLIT and self._press_for_good(last.solution):
             return True
         self._add(last)
         if end:
