@@ -106,3 +106,26 @@ def test_a_film_shows_the_stop_pressed_in(data):
 def test_an_orbit_marks_its_contacts():
     fig = vs.simulate(system(), (0, 0), 20).plot(periods=2)
     assert [sum(line.get_label() == "contact" for line in ax.lines) for ax in fig.axes] == [1, 1]
+
+
+@pytest.mark.parametrize(
+    "values, scale", [([1, 2, 5, 10, 20, 50, 100], "log"), ([1, 10, 20, 30, 100], "linear"), ([1, 2, 5, 10], "linear")]
+)
+@pytest.mark.parametrize("kind", ["bifurcation", "contacts"])
+def test_values_in_proportion_have_a_logarithmic_axis(kind, values, scale):
+    """Over two decades and more."""
+    swept = vs.sweep(system(), {"k_stop": values}, transient=5, record=5, observe=["section", "contacts"])
+    ax = figure(swept, kind).axes[-1]
+    assert ax.get_xscale() == scale
+    low, high = ax.get_xlim()
+    assert low < values[0] and values[-1] < high < 1.3 * values[-1]
+
+
+@pytest.mark.parametrize("kind", ["contacts", "energy"])
+def test_both_ways_have_names(kind):
+    start = {"follow": "both"}
+    swept = vs.sweep(
+        system(), {"omega": [0.8, 0.9]}, transient=20, record=40, observe=["section", "contacts", "energy"], start=start
+    )
+    labels = [text.get_text() for text in figure(swept, kind).axes[0].get_legend().get_texts()]
+    assert len(labels) == 2 and "up" in labels[0] and "down" in labels[1]

@@ -2,10 +2,11 @@
 
 import numpy as np
 
+from vibro_sweep.plotting.labels import ABOVE
 from vibro_sweep.plotting.spectrum_panel import curve
-from vibro_sweep.plotting.style import BRANCHES, INK
+from vibro_sweep.plotting.style import ARROWS, BRANCHES, INK
 from vibro_sweep.plotting.sweep_result import Result
-from vibro_sweep.plotting.sweeps import reach
+from vibro_sweep.plotting.sweeps import set_reach
 
 SIZES = {"penetration_max": "largest penetration", "contact_force_max": "largest force"}
 
@@ -25,11 +26,14 @@ def contacts(result: Result):
         sizes = result.array(name)[order]
         if result.follow:
             for i, (way, colour) in enumerate(BRANCHES.items()):
-                curve(ax, values[order], sizes[:, i], color=colour, label=way)
+                curve(ax, values[order], sizes[:, i], color=colour, label=ARROWS[way])
         else:
             curve(ax, values[order], sizes, color=INK)
         ax.set(ylabel=label + result.unit(name))
         ax.set_ylim(bottom=0)
-    axes[-1].set(xlabel=result.axis(key), xlim=reach(values[order]))
+    if result.follow:
+        axes[0].legend(ncols=len(BRANCHES), **ABOVE)
+    axes[-1].set_xlabel(result.axis(key))
+    set_reach(axes[-1], values[order])
     fig.align_ylabels(axes)
     return fig

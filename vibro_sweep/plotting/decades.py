@@ -6,6 +6,7 @@ from matplotlib.ticker import FixedLocator, NullLocator
 
 SPAN = 10.0  # the largest of the numbers over their lower quartile, from which on they span decades
 FEW = 1.5  # decades of an axis on which 2 and 5 are named as well
+DECADES, EVEN = 2.0, 5.0  # swept values in proportion: so many at least, and the largest step over the smallest one
 ZERO = 0.5  # the part of the axis from 0 to the least number above it, in decades
 
 
@@ -14,6 +15,14 @@ def spans(values) -> bool:
     known = np.asarray(values)[np.isfinite(values)]
     above = known[known > 0]
     return above.size > 0 and bool((known >= 0).all()) and above.max() >= SPAN * np.quantile(above, 0.25)
+
+
+def in_proportion(values) -> bool:
+    """Whether rising values take steps in proportion to themselves, over decades, as 1, 2, 5, 10, ... do."""
+    if len(values) < 3 or not values[0] > 0:
+        return False
+    steps = np.diff(np.log10(values))
+    return bool(steps.sum() >= DECADES and steps.max() <= EVEN * steps.min())
 
 
 def scale_axis(ax, values) -> None:

@@ -4,10 +4,11 @@ import numpy as np
 
 from vibro_sweep.model.state import MOST_MASSES
 from vibro_sweep.plotting.impact_panel import NONE
+from vibro_sweep.plotting.labels import ABOVE
 from vibro_sweep.plotting.spectrum_panel import curve
-from vibro_sweep.plotting.style import BRANCHES, FAINT, INK, LEFT, RIGHT, symbol
+from vibro_sweep.plotting.style import ARROWS, BRANCHES, FAINT, INK, LEFT, RIGHT, symbol
 from vibro_sweep.plotting.sweep_result import Result
-from vibro_sweep.plotting.sweeps import reach
+from vibro_sweep.plotting.sweeps import set_reach
 
 COLOURS = (INK, RIGHT, LEFT, FAINT)
 
@@ -42,14 +43,13 @@ def energy(result: Result):
     size = "largest size" if chosen and chosen.startswith("peak") else "root mean square"
     of = f" of {symbol(chosen.partition('_')[2])}" if chosen else ""
     below.set(ylabel=f"{size}{of}{result.unit(shown[0])}", xlabel=result.axis(key))
-    below.set_xlim(reach(values[order]))
+    set_reach(below, values[order])
     for ax in axes:
         ax.set_ylim(bottom=0)
     if len(shown) > 1:
         handles, labels = below.get_legend_handles_labels()
         named = dict(zip(labels, handles, strict=True))  # each start has lines of its own
-        place = {"loc": "lower right", "bbox_to_anchor": (1, 1), "borderaxespad": 0.1}
-        below.legend(named.values(), named.keys(), ncols=min(8, len(shown)), **place)
+        below.legend(named.values(), named.keys(), ncols=min(8, len(shown)), **ABOVE)
     fig.align_ylabels(axes)
     return fig
 
@@ -61,4 +61,5 @@ def _power(ax, values, power, result) -> None:
         curve(ax, values, power, color=INK)
         return
     for i, (name, colour) in enumerate(BRANCHES.items()):
-        curve(ax, values, power[:, i], color=colour, label=name)
+        curve(ax, values, power[:, i], color=colour, label=ARROWS[name])
+    ax.legend(ncols=len(BRANCHES), **ABOVE)

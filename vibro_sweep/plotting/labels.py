@@ -10,6 +10,7 @@ MARK = 2.4  # points from the middle of a mark to its edge, with the white rim o
 SAME = 4.0  # points between marks of one name, of which nearer ones have it once
 CORNERS = ((1, 1), (-1, 1), (1, -1), (-1, -1))  # of a mark, where its name may stand
 SIZES, HIGHEST = (8, 7, 6, 5), 0.35  # of the type of a legend, and the part of the page that it takes at most
+ABOVE = {"loc": "lower right", "bbox_to_anchor": (1, 1), "borderaxespad": 0.1}  # a legend above its panel
 APART = 1.5  # points between the labels of neighbouring ticks
 
 

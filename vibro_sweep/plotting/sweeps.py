@@ -6,8 +6,9 @@ from matplotlib.patches import Patch
 
 from vibro_sweep.model.state import MOST_MASSES, state
 from vibro_sweep.plotting import density, rests, strip
+from vibro_sweep.plotting.decades import in_proportion
 from vibro_sweep.plotting.impact_panel import NONE, impact_counts, there_are
-from vibro_sweep.plotting.labels import legend_below
+from vibro_sweep.plotting.labels import ABOVE, legend_below
 from vibro_sweep.plotting.spectrum_panel import spectrum
 from vibro_sweep.plotting.style import (
     ARROWS,
@@ -100,7 +101,7 @@ def _stack(result, panels, what):
         draw(ax, result, values, order)
     if key == "b":
         mark_grazing(axes, result, *(result.options.xlim or values[[0, -1]]))
-    axes[-1].set_xlim(reach(values))
+    set_reach(axes[-1], values)
     axes[-1].set_xlabel(result.axis(key))
     _key(axes[0], result)
     _explanations(fig, axes, result)
@@ -108,7 +109,17 @@ def _stack(result, panels, what):
     return fig
 
 
-def reach(values) -> tuple[float, float]:
+def set_reach(ax, values) -> None:
+    """The x axis over rising values; logarithmic where they are in proportion."""
+    if in_proportion(values):
+        beyond = (values[-1] / values[0]) ** 0.02
+        ax.set_xscale("log")
+        ax.set_xlim(values[0] / beyond, beyond * values[-1])
+    else:
+        ax.set_xlim(_reach(values))
+
+
+def _reach(values) -> tuple[float, float]:
     """The limits of an axis over rising values: half a step beyond them, but not far."""
     borders = edges(values)
     most = 0.02 * (values[-1] - values[0]) or np.inf
@@ -151,8 +162,7 @@ def _key(ax, result):
         both = [Line2D([], [], color=INK, label="both", **dots)] if ax.images else []
         handles += [*(Line2D([], [], color=BRANCHES[n], label=ARROWS[n], **dots) for n in BRANCHES), *both]
     if handles:
-        place = {"loc": "lower right", "bbox_to_anchor": (1, 1), "borderaxespad": 0.1, "borderpad": 0.1}
-        ax.legend(handles=handles, ncols=len(handles), handletextpad=0.3, columnspacing=1.2, **place)
+        ax.legend(handles=handles, ncols=len(handles), handletextpad=0.3, columnspacing=1.2, borderpad=0.1, **ABOVE)
 
 
 def _explanations(fig, axes, result):
@@ -193,7 +203,8 @@ def section(ax, result, values, order):
         return
     repeats = result.repeats(points, order)
     count = _distinct(points, there, repeats)
-    if there.sum() >= MANY * min(1, len(values) / WIDE) / (4 if result.follow else 1):  # of wide dots fewer
+    most = MANY * min(1, len(values) / WIDE) / (4 if result.follow else 1)  # of wide dots fewer
+    if there.sum() >= most and not in_proportion(values):  # the columns of a grid are even
         cloud = density.Cloud(values, points, repeats, high - low)
         if result.follow:
             density.two(ax, cloud, list(BRANCHES.values()))
