@@ -16,7 +16,7 @@ from vibro_sweep.model.status import is_valid
 MOST = 1e-12  # of a residual
 POINTS = 12  # along each axis of a plane
 CLEARANCES = np.linspace(0.03, 0.8, 64)  # in parts of the grazing clearance
-KNOWN = 1e-8  # stated error of an exponent: that of an orbit that still comes nearer to its period is larger
+KNOWN = 1e-9  # stated error of an exponent: that of an orbit that still comes nearer to its period is larger
 ROUNDING = 3e-14  # of c_stop/m_e, by which the sum of the exponents is the difference of large numbers
 RECORD = 100
 MODELS = ("two_mass", "one_mass", "chain", "matrices")
