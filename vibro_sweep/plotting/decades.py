@@ -25,6 +25,11 @@ def in_proportion(values) -> bool:
     return bool(steps.sum() >= DECADES and steps.max() <= EVEN * steps.min())
 
 
+def along_axis(values):
+    """The functions from rising values to where they lie along their axis, and back."""
+    return (np.log, np.exp) if in_proportion(values) else (np.asarray, np.asarray)
+
+
 def scale_axis(ax, values) -> None:
     """The y axis from zero on; logarithmic for values that span decades, with a place for zero where there is one."""
     if not spans(values):

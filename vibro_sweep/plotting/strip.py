@@ -7,6 +7,7 @@ from matplotlib.patches import Patch
 
 from vibro_sweep.model.branch_file import WINDOWS
 from vibro_sweep.model.outcomes import REASONS
+from vibro_sweep.plotting.decades import along_axis
 from vibro_sweep.plotting.ragged import RaggedFile
 from vibro_sweep.plotting.style import FAINT, SPECIAL, edges, special_mark, type_size
 from vibro_sweep.plotting.sweep_result import PlotError, Result
@@ -36,7 +37,9 @@ def windows(ax, result: Result, values, order):
     left, right = values[0], values[-1]
     lo, hi = np.maximum(file["window_lo"], left), np.minimum(file["window_hi"], right)
     shown = np.flatnonzero(hi >= lo)
-    lanes = lanes_of(lo[shown], hi[shown], APART * (right - left))
+    to, back = along_axis(values)
+    begin, end, length = to(lo[shown]), to(hi[shown]), to(right) - to(left)
+    lanes = lanes_of(begin, end, APART * length)
     for chosen, colour, name in ((0, BAR, "not symmetric"), (1, SYMMETRIC, "symmetric")):
         bars = [
             [(lo[w], lane - 0.32), (hi[w], lane - 0.32), (hi[w], lane + 0.32), (lo[w], lane + 0.32)]
@@ -46,7 +49,8 @@ def windows(ax, result: Result, values, order):
         ax.add_collection(PolyCollection(bars, facecolor=colour, edgecolor=FAINT, linewidth=0.4, label=name))
     unvisited = _unvisited(ax, file, shown, lanes, (left, right))
     _ends(ax, file, shown, lanes, (left, right))
-    _periods(ax, file, shown, lanes, lo, hi, (0.08 if getattr(ax.figure, "narrow", False) else 0.03) * (right - left))
+    wide = end - begin >= (0.08 if getattr(ax.figure, "narrow", False) else 0.03) * length
+    _periods(ax, file, shown[wide], np.array(lanes)[wide], back((begin + end) / 2)[wide])
     reasons = _reasons(ax, result, file, values, order)
     ax.set_ylim(max(lanes, default=0) + 0.7, -1.6)
     ax.set_yticks([])
@@ -112,18 +116,18 @@ def _ends(ax, file, shown, lanes, limits):
         ax.plot(x, y, **special_mark(kind, size))
 
 
-def _periods(ax, file, shown, lanes, lo, hi, least):
-    for w, lane in zip(shown, lanes, strict=True):
-        if hi[w] - lo[w] >= least:
-            text = str(file["window_period"][w])
-            ax.text((lo[w] + hi[w]) / 2, lane, text, ha="center", va="center", fontsize=type_size(6), clip_on=True)
+def _periods(ax, file, shown, lanes, middles):
+    for w, lane, middle in zip(shown, lanes, middles, strict=True):
+        text = str(file["window_period"][w])
+        ax.text(middle, lane, text, ha="center", va="center", fontsize=type_size(6), clip_on=True)
 
 
 def _reasons(ax, result, file, values, order) -> list[str]:
     """A band of the orbits that lie in no window; which reasons there are."""
     (swept,) = result.sweep.values()  # of which the picture may show a part
     reasons = file["orbit_reason"].reshape(len(swept), -1)[order]
-    borders, named = edges(values), []
+    to, back = along_axis(values)
+    borders, named = back(edges(to(values))), []
     for code, name in enumerate(REASONS):
         there = np.flatnonzero((reasons == code).any(axis=1))
         if code and len(there):
