@@ -34,7 +34,7 @@ def test_sections_of_sweeps(seeds):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", [*range(60), 205, 936])  # these two bounce on a preload ever lower
-def test_contacts_of_sixty_oscillators(seed):
+def test_contacts_of_an_oscillator(seed):
     report = compared(seed)
     assert not report["defect"] and max(report["errors"].values()) <= LEAST
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from vibro_sweep.engine.compliant.distance import delta_of, set_delta
 from vibro_sweep.engine.compliant.law import lane_of
-from vibro_sweep.engine.motion.first_contact import first_contact, nearer, set_gap
+from vibro_sweep.engine.motion.first_contact import polished_contact, set_gap
 from vibro_sweep.engine.motion.impacts import size_at
 from vibro_sweep.engine.motion.rest import first_nonzero
 from vibro_sweep.engine.quadrature import PLACES, WEIGHTS
@@ -110,7 +110,7 @@ def first_zero(contact, c, n, length):
         return np.inf
     if not contact.gap[0] > 0.0:
         return 0.0
-    return nearer(contact.gap, first_contact(contact.gap, bound_third_over(contact.gap, length), length), length)
+    return polished_contact(contact.gap, bound_third_over(contact.gap, length), length)
 
 
 @jit

@@ -12,7 +12,7 @@ from vibro_sweep.engine.compliant.force_phase import set_phase, turn_phase
 from vibro_sweep.engine.compliant.law import lane_of
 from vibro_sweep.engine.compliant.pressing import begin_contact, stay_in_contact
 from vibro_sweep.engine.compliant.relaxing import bring_stops, reach_of_relaxing, relax_by, set_distance, speed_of_stop
-from vibro_sweep.engine.motion.first_contact import first_contact, nearer, set_gap
+from vibro_sweep.engine.motion.first_contact import polished_contact, set_gap
 from vibro_sweep.engine.motion.impacts import (
     EXPLAINED,
     MOST_EVENTS,
@@ -191,11 +191,11 @@ def touch_of(q, contact, o, stops, side, order, reach, left):
         return np.inf
     if contact.relaxed[n] == 0.0:
         set_gap(o.gap, o.c[0], -delta, side, order)
-        return nearer(o.gap, first_contact(o.gap, bounds(q, o.gap[:])[1], left), left)
+        return polished_contact(o.gap, bounds(q, o.gap[:])[1], left)
     set_distance(contact, n, side, o.c[0], delta, order)
     if not contact.gap[0] > 0.0:
         return 0.0
-    return nearer(contact.gap, first_contact(contact.gap, bound_third_over(contact.gap, left), left), left)
+    return polished_contact(contact.gap, bound_third_over(contact.gap, left), left)
 
 
 @jit

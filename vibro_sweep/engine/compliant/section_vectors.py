@@ -18,11 +18,8 @@ import math
 from vibro_sweep.engine.compliant.law import lane_of
 from vibro_sweep.engine.compliant.relaxing import place_at
 from vibro_sweep.engine.simd.jit import inline, jit
-from vibro_sweep.engine.variational.orthonormal import collect, columns_of, orthonormalise, place_of
+from vibro_sweep.engine.variational.orthonormal import collect, columns_of, orthonormalise_closely, place_of
 from vibro_sweep.engine.variational.tangent import log_growth
-from vibro_sweep.engine.variational.tangent_flight import only
-
-TWICE = 2  # where rounding alone was left of a vector, it is not at right angles to the others yet
 
 
 @inline
@@ -46,7 +43,7 @@ def end_with_places(law, t, i, E, R, logs):
     for j in range(len(t.growth)):
         logs[j] = log_growth(t, j, i)
     if count > len(t.growth):
-        logs[count - 1] = t.alone[2, i]
+        logs[count - 1] = t.alone_log[i]
     return count
 
 
@@ -63,8 +60,9 @@ def copy_vectors(t, i, E):
 def begin_in_contact(contact, t, i, o, width, E, R):
     """`begin_with_places` where there are compliant stops."""
     size, columns = len(t.growth), columns_of(t)
-    for m in range(len(t.alone)):
-        t.alone[m, i] = 0.0
+    for n in range(2):
+        t.alone[n, i] = 0.0
+    t.alone_log[i] = t.alone_by_itself[i] = 0.0
     if not watch_places(contact, o, width) or t.lost[i] > 0.0:
         copy_vectors(t, i, E)
         return
@@ -78,7 +76,7 @@ def begin_in_contact(contact, t, i, o, width, E, R):
         for k in range(j + 1, count):
             t.shear[place_of(columns, j, k), i] = R[j, k] / R[j, j]
     if count > size:
-        t.alone[2, i] = math.log(R[size, size])
+        t.alone_log[i] = math.log(R[size, size])
 
 
 @jit
@@ -88,8 +86,7 @@ def end_in_contact(contact, t, i, E, R):
     if not (contact.unit[0] > 0.0 or contact.unit[1] > 0.0) or t.lost[i] > 0.0:
         copy_vectors(t, i, E)
         return size
-    for _ in range(TWICE):
-        orthonormalise(t, only(i))
+    orthonormalise_closely(t, i)
     count = orthonormalise_with_places(contact, t, i, E, R)
     for j in range(size):
         for k in range(j + 1, size):
@@ -97,11 +94,11 @@ def end_in_contact(contact, t, i, E, R):
     collect(t, 1 << i)
     for j in range(size):
         if count > size:
-            along = R[j, size] / R[j, j] * math.exp(t.alone[2, i] - log_growth(t, j, i))
+            along = R[j, size] / R[j, j] * math.exp(t.alone_log[i] - log_growth(t, j, i))
             t.shear[place_of(columns, j, size), i] += along
         t.logs[j, i] += math.log(R[j, j])
     if count > size:
-        t.alone[2, i] += math.log(R[size, size])
+        t.alone_log[i] += math.log(R[size, size])
     return count
 
 

@@ -14,13 +14,19 @@ from vibro_sweep.engine.compliant.law import lane_of
 from vibro_sweep.engine.compliant.relaxing import GONE
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.simd.lanes import alike
-from vibro_sweep.engine.variational.orthonormal import columns_of, count_growth, orthonormalise, place_of, watch
+from vibro_sweep.engine.variational.orthonormal import (
+    columns_of,
+    count_growth,
+    orthonormalise,
+    orthonormalise_closely,
+    place_of,
+    watch,
+)
 from vibro_sweep.engine.variational.tangent import log_growth
 from vibro_sweep.engine.variational.tangent_at_rest import motion_in
 from vibro_sweep.engine.variational.tangent_flight import apply_flight, only
 
 CONTINUED, RELAXED, UNRELAXED = range(3)  # how a contact begins
-TWICE = 2  # where rounding alone was left of a vector, it is not at right angles to the others yet
 SHRUNK = 1.0  # as a logarithm: before a contact that shrinks vectors by more they are orthonormalised
 
 
@@ -92,8 +98,7 @@ def touch_relaxing(t, i, contact, side):
     e is the direction of delta' alone. ds may be large, and all vectors lie close to e then: they are Q R from here on,
     found by rotations in (pi, delta, w2, ..), whose first row alone is large.
     """
-    for _ in range(TWICE):
-        orthonormalise(t, only(i))
+    orthonormalise_closely(t, i)
     size, n, e, to, R = len(t.growth), lane_of(side), contact.before, t.to_frame, contact.touch
     share = contact.damping[n] * contact.decay
     for m in range(size):
@@ -130,11 +135,11 @@ def touch_alone(t, i, n, share, determinant, along):
     for m in range(size):
         r = share * ds * along[m] / determinant
         place -= t.places[size * (1 - n) + m, i] * r
-        t.shear[place_of(columns_of(t), m, size), i] += r * math.exp(t.alone[2, i] - log_growth(t, m, i))
+        t.shear[place_of(columns_of(t), m, size), i] += r * math.exp(t.alone_log[i] - log_growth(t, m, i))
     if place != 0.0:
         t.alone[1 - n, i] = math.copysign(1.0, place)
-        t.alone[2, i] += math.log(abs(place))
-        t.alone[3, i] += math.log(abs(place))
+        t.alone_log[i] += math.log(abs(place))
+        t.alone_by_itself[i] += math.log(abs(place))
 
 
 @jit

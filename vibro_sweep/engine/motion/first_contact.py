@@ -54,21 +54,6 @@ def set_gap(g, c, gap, side, n):
 
 
 @jit
-def nearer(g, root, rest):
-    """The root after a step of Newton's method: `first_contact` ends within four roundings of g, and where a flight is
-    one of many short ones between contacts its speed at the touch follows all of them."""
-    if not 0.0 < root < np.inf:
-        return root
-    p, dp = g[ORDER - 1], 0.0
-    for n in range(ORDER - 2, 0, -1):
-        dp = dp * root + p
-        p = p * root + g[n]
-    rate = p + root * dp
-    found = root - (g[0] + root * p) / rate if rate < 0.0 else root
-    return found if 0.0 < found <= rest else root
-
-
-@jit
 def first_contact(g, third, rest):
     """First root in (0, rest] of the polynomial g (Taylor coefficients), with g(0) > 0.
 
@@ -106,3 +91,19 @@ def first_contact(g, third, rest):
         if latest <= length and latest - d <= 2.0**-52 * u:
             return u
     return np.nan
+
+
+@jit
+def polished_contact(g, third, rest):
+    """`first_contact` and a step of Newton's method: it ends within four roundings of g, which add up in many short
+    flights that follow each other."""
+    root = first_contact(g, third, rest)
+    if not 0.0 < root < np.inf:
+        return root
+    p, dp = g[ORDER - 1], 0.0
+    for n in range(ORDER - 2, 0, -1):
+        dp = dp * root + p
+        p = p * root + g[n]
+    rate = p + root * dp
+    found = root - (g[0] + root * p) / rate if rate < 0.0 else root
+    return found if 0.0 < found <= rest else root

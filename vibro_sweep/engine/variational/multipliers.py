@@ -24,8 +24,7 @@ from vibro_sweep.engine.motion.together import flight_of, stops_of
 from vibro_sweep.engine.simd.jit import jit, noinline
 from vibro_sweep.engine.variational import tangent
 from vibro_sweep.engine.variational.multiplier_groups import AGAIN, BESIDE, find_multipliers
-from vibro_sweep.engine.variational.orthonormal import columns_of, orthonormalise, place_of
-from vibro_sweep.engine.variational.tangent_flight import only
+from vibro_sweep.engine.variational.orthonormal import columns_of, orthonormalise_closely, place_of
 from vibro_sweep.model import status
 
 TURNED = 1e-13  # what vectors have found their directions better than, unless they turn for ever
@@ -47,8 +46,7 @@ def begin_period(e, w, results, which):
             goes = goes and touches and not is_at_rest(e.law, o)
         o.periods = result.period if goes else 0
         if goes:
-            for _ in range(2):  # where rounding alone was left of a vector, it is not at right angles to the others yet
-                orthonormalise(t, only(i))
+            orthonormalise_closely(t, i)
             tangent.sort_vectors(t, i)
             for n in range(len(t.shear)):
                 t.shear[n, i] = 0.0
@@ -110,7 +108,7 @@ def read_period(e, w, results, which):
                 found.count, found.beyond = count, 0.0
                 if known > len(t.growth):
                     last = known - 1
-                    found.beyond = (found.log[last] if count == known else w.logs[last]) - t.alone[3, i]
+                    found.beyond = (found.log[last] if count == known else w.logs[last]) - t.alone_by_itself[i]
             if which == AGAIN:
                 find_direction(t, i, w.axes[i], w.beside[i, 0])
     t.collected = False

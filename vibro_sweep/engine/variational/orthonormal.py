@@ -8,7 +8,7 @@ import math
 import numpy as np
 
 from vibro_sweep.engine.simd.jit import inline, jit, noinline
-from vibro_sweep.engine.simd.lanes import LANES, bits, select
+from vibro_sweep.engine.simd.lanes import LANES, bits, lanes_of, select
 from vibro_sweep.engine.simd.matrices import column, product, put_column, scaled, subtract
 from vibro_sweep.engine.simd.memory import put, row
 
@@ -44,6 +44,13 @@ def orthonormalise(t, who):
     count_growth(t, who)
 
 
+@jit
+def orthonormalise_closely(t, i):
+    """Twice: where rounding alone was left of a vector of orbit i, it is not at right angles to the others yet."""
+    for _ in range(2):
+        orthonormalise(t, lanes_of(1 << i))
+
+
 @inline
 def count_growth(t, who):
     """Count the growth of vectors that have become those of Q of Q R; of R there are `square_length` and `normal`."""
@@ -76,7 +83,7 @@ def combine_places(t, who):
 @inline
 def columns_of(t):
     """How many vectors there are at most: as many as states, and with compliant stops one more."""
-    return len(t.growth) + len(t.alone) // 4
+    return len(t.growth) + len(t.alone) // 2
 
 
 @inline

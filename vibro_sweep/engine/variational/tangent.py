@@ -61,9 +61,10 @@ def tangents_of(masses: int, paper: bool, compliant: bool = False) -> np.dtype:
         # what each vector does to the place of a stop that was left, on the left and on the right; one row, of which
         # the compiler knows that it is not used, where no stop relaxes
         ("places", float, (2 * n if compliant else 1, LANES)),
-        # of the vector that moves a stop alone (section_vectors.py) the places of both, and as logarithms its growth
-        # with the other vectors and without them
-        ("alone", float, (4 if compliant else 1, LANES)),
+        # of the vector that moves a stop alone (section_vectors.py) the places of both,
+        ("alone", float, (2 if compliant else 1, LANES)),
+        ("alone_log", float, (LANES,)),  # the logarithm of its growth in D, and
+        ("alone_by_itself", float, (LANES,)),  # without that by which others make it orthonormal
         # by how much, as a logarithm, vectors would grow more at most if stops that are at rest to rounding still moved
         ("forgotten", float, (n if compliant else 1, LANES)),
         ("wanted", np.bool_),  # else nothing is computed
@@ -110,6 +111,7 @@ def begin(t, i):
         t.places[m, i] = 0.0
     for m in range(len(t.alone)):
         t.alone[m, i] = 0.0
+    t.alone_log[i] = t.alone_by_itself[i] = 0.0
     t.lost[i], t.volume[i], t.offset[i], t.mixed[i] = 0.0, 1.0, 0.0, 0.0
     t.cell[i] = t.flown[i] = 0
     start_record(t, i)
