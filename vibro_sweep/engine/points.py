@@ -118,7 +118,7 @@ def prepare(points, i, w, plan):
         w.built[table] = point
     set_graze(q, point)
     stops = Stops(point.stops[0], point.stops[1], point.stops[2], point.stops[3])
-    o.from_base = int(q.stiff or q.largest > LARGE * clearance(stops))
+    o.from_base = q.stiff or q.largest > LARGE * clearance(stops)
     strike.set_stops(e.strike[0], i, stops)
     give_law(e.law, i, point, q)
     if not same_tables(point, w.carried[i], w.paper, w.other):

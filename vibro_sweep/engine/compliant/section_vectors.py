@@ -21,6 +21,8 @@ from vibro_sweep.engine.simd.jit import inline, jit
 from vibro_sweep.engine.variational.orthonormal import collect, columns_of, orthonormalise_closely, place_of
 from vibro_sweep.engine.variational.tangent import log_growth
 
+TURNED = 1e-13  # what vectors have found their directions better than, unless they turn for ever
+
 
 @inline
 def begin_with_places(law, t, i, o, width, E, R):
@@ -28,7 +30,8 @@ def begin_with_places(law, t, i, o, width, E, R):
     if law is not None:
         begin_in_contact(law.orbits[i], t, i, o, width, E, R)
     else:
-        copy_vectors(t, i, E)
+        for m in range(len(E)):
+            E[m] = t.Z[m, i]
 
 
 @inline
@@ -39,12 +42,21 @@ def end_with_places(law, t, i, E, R, logs):
     if law is not None:
         count = end_in_contact(law.orbits[i], t, i, E, R)
     else:
-        copy_vectors(t, i, E)
+        for m in range(len(E)):
+            E[m] = t.Z[m, i]
     for j in range(len(t.growth)):
         logs[j] = log_growth(t, j, i)
     if count > len(t.growth):
         logs[count - 1] = t.alone_log[i]
     return count
+
+
+@inline
+def count_vectors(law, t, begins, ends, known):
+    """From how many of the vectors of a period that are known at its end its multipliers are found."""
+    if law is not None and known > len(t.growth) and not has_turned(t, begins, ends):
+        return len(t.growth)
+    return known
 
 
 @jit
@@ -176,3 +188,20 @@ def invert(R, size):
             for m in range(k, j):
                 total += R[k, m] * R[m, j]
             R[k, j] = -R[j, j] * total
+
+
+@jit
+def has_turned(t, begins, ends):
+    """Whether the vectors span other directions than a period ago, as where their last multiplier is one of a complex
+    pair: then the vector that moves a stop alone, the last one, has to be counted. begins, ends: the vectors, flat.
+    """
+    size, columns = len(t.growth), columns_of(t)
+    for j in range(size):
+        for row in range(0, len(ends), columns):
+            apart = ends[row + j]
+            for k in range(size):
+                for m in range(0, len(ends), columns):
+                    apart -= begins[row + k] * begins[m + k] * ends[m + j]
+            if abs(apart) > TURNED:
+                return True
+    return False

@@ -148,6 +148,9 @@ class _Flags(Flags):
         return len(self._values)
 
 
+_pipelines: list = []
+
+
 class WholeCompiler(Compiler):
     """The compiler of an exported kernel."""
 
@@ -165,10 +168,13 @@ class WholeCompiler(Compiler):
         _patches().remember_sizes(context)
 
     def define_pipelines(self):
-        [pipeline] = super().define_pipelines()
-        pipeline.passes = [(step, why) for step, why in pipeline.passes if step.name() not in SPARED]
-        pipeline.finalize()
-        return [pipeline]
+        """The passes, chosen once for all kernels."""
+        if not _pipelines:
+            [pipeline] = super().define_pipelines()
+            pipeline.passes = [(step, why) for step, why in pipeline.passes if step.name() not in SPARED]
+            pipeline.finalize()
+            _pipelines.append(pipeline)
+        return _pipelines
 
     @_with_room
     def compile_extra(self, func):

@@ -2,12 +2,13 @@
 
 numba looks after each pass for how long every variable lives, for references that kernels do not count; puts what it
 computes into memory and takes it out again (values.py); measures how long each call of LLVM takes, once for each kernel
-that is being compiled; finds the type of an operation anew wherever it stands, how its arguments are passed, and
-whether the function that writes it takes a line number; goes through a whole kernel for each variable that is assigned
-twice; writes out each statement and the types of the kernel, for its listeners; imports all that could be called,
-once for each kernel; searches for `with` and for dictionaries; asks LLVM for the size of a type as often as a variable
-has it; and prepares, for each operation, to catch warnings about it and to tell where an error has come from. (Errors
-still name their line; warnings go where all others go.)
+that is being compiled, and tells its listeners of each call and each pass; asks five questions of every part of a
+statement in which it looks for variables; finds the type of an operation and of an attribute anew wherever it stands,
+how its arguments are passed, and whether the function that writes it takes a line number; goes through a whole kernel
+for each variable that is assigned twice; writes out each statement and, at each pass, the types of the kernel; imports
+all that could be called, once for each kernel; searches for `with` and for dictionaries; asks LLVM for the size of a
+type as often as a variable has it; and prepares, for each operation, to catch warnings about it and to tell where an
+error has come from. (Errors still name their line; warnings go where all others go.)
 """
 
 import contextlib
@@ -19,6 +20,7 @@ from numba.core import (
     base,
     byteflow,
     cgutils,
+    compiler_machinery,
     cpu,
     errors,
     event,
@@ -32,11 +34,13 @@ from numba.core import (
 from numba.core import ir as numba_ir
 from numba.core.postproc import PostProcessor, VariableLifetime
 from numba.core.transforms import canonicalize_cfg
+from numba.core.typing.context import BaseContext
 from numba.np import arrayobj
 
 from vibro_sweep.engine.simd import values
 
 _lifetimes, _call_type = PostProcessor.run, types.Function.get_call_type
+_attribute = BaseContext.find_matching_getattr_template
 _pack, _rewrite = base.BaseContext.get_arg_packer, ssa._run_block_rewrite
 
 
@@ -50,12 +54,27 @@ def _lifetimes_if_counted(self, emit_dels=False, extend_lifetimes=False):
     ir.variable_lifetime, ir.generator_info = VariableLifetime(ir.blocks), None
 
 
+def _run_pass(self, number, step, state):
+    """`PassManager._runPass` without what it measures, tells listeners, and checks of numba's own passes."""
+    step.analysis = self._analysis
+    for do in step.run_initialization, step.run_pass, step.run_finalizer:
+        do(state)
+
+
 def _call_type_once(self, context, args, kws):
     """The signature with which numba's own function is called, remembered."""
     key = self._code, tuple(kind._code for kind in args), tuple(kws.items())
     if key not in _call_types:
         _call_types[key] = _call_type(self, context, args, kws)
     return _call_types[key]
+
+
+def _attribute_once(self, kind, name):
+    """What an attribute of a type is, remembered: of each function that is called numba asks for `__call__`."""
+    key = kind._code, name
+    if key not in _attributes:
+        _attributes[key] = _attribute(self, kind, name)
+    return _attributes[key]
 
 
 def _pack_once(self, kinds):
@@ -67,6 +86,7 @@ def _pack_once(self, kinds):
 
 
 _call_types: dict[tuple, object] = {}
+_attributes: dict[tuple, object] = {}
 _packers: dict[tuple, object] = {}
 
 
@@ -85,6 +105,20 @@ def _names(block):
     return names
 
 
+def _variables_in(self, parts):
+    """`Inst._rec_list_vars` of a statement: most of its parts are names, places and None, and are passed over first."""
+    found = []
+    for part in parts.values() if type(parts) is dict else parts:
+        kind = type(part)
+        if kind is numba_ir.Var:
+            found.append(part)
+        elif kind is list or kind is tuple or kind is dict:
+            found += self._rec_list_vars(part)
+        elif isinstance(part, numba_ir.Inst):
+            found += part.list_vars()
+    return found
+
+
 def _null_context(*args, **about):
     """Replaces numba's context managers that are entered for every operation."""
     return _nothing
@@ -99,20 +133,27 @@ def _look_through_registries(context):
         context.install_registry(registry)
 
 
+def _say_nothing(*what, **about):
+    """Replaces what tells numba's listeners of events."""
+
+
 class _Silent:
     """Replaces numba's loggers, which log each bytecode and statement."""
 
-    @staticmethod
-    def debug(*args):
-        pass
+    debug = staticmethod(_say_nothing)
 
 
 INSTEAD = (
     (PostProcessor, "run", _lifetimes_if_counted),
+    (compiler_machinery.PassManager, "_runPass", _run_pass),
     (types.Function, "get_call_type", _call_type_once),
+    (BaseContext, "find_matching_getattr_template", _attribute_once),
     (base.BaseContext, "get_arg_packer", _pack_once),
     (ssa, "_run_block_rewrite", _rewrite_where_named),
+    (numba_ir.Inst, "_rec_list_vars", _variables_in),
     (event, "install_timer", _null_context),
+    (event, "start_event", _say_nothing),
+    (event, "end_event", _say_nothing),
     (typeinfer, "new_error_context", _null_context),
     (lowering, "new_error_context", _null_context),
     (errors.WarningsFixer, "catch_warnings", _null_context),

@@ -53,5 +53,5 @@ def fill_frame(q, psi, omega_squared, mu_m):
     q.most_cells_in_planes = q.most_cells_mixed
     if turning:  # nothing then but the range of the floats asks for a look
         q.most_cells_in_planes = max(
-            q.most_cells_mixed, int(min(LOST / (fastest * q.width), MOST_CELLS)) if fastest > 0.0 else MOST_CELLS
+            q.most_cells_mixed, int(min(LOST / (fastest * q.width), float(MOST_CELLS))) if fastest > 0.0 else MOST_CELLS
         )

@@ -18,7 +18,7 @@ U Q_0^T.
 import math
 
 from vibro_sweep.engine.compliant.law import begin_beside, end_beside, is_at_rest, keep_between
-from vibro_sweep.engine.compliant.section_vectors import begin_with_places, end_with_places
+from vibro_sweep.engine.compliant.section_vectors import begin_with_places, count_vectors, end_with_places
 from vibro_sweep.engine.motion.orbits import reset_counts, set_state
 from vibro_sweep.engine.motion.together import flight_of, stops_of
 from vibro_sweep.engine.simd.jit import jit, noinline
@@ -27,7 +27,6 @@ from vibro_sweep.engine.variational.multiplier_groups import AGAIN, BESIDE, find
 from vibro_sweep.engine.variational.orthonormal import columns_of, orthonormalise_closely, place_of
 from vibro_sweep.model import status
 
-TURNED = 1e-13  # what vectors have found their directions better than, unless they turn for ever
 ASIDE = 1e4  # units of rounding of the state by which the third begins beside the orbit, and
 OFF = 16.0  # by how many of them rounding at one impact moves the orbit; that at others has nothing to do with it
 
@@ -95,11 +94,10 @@ def read_period(e, w, results, which):
             graze = 2.0**-52 * (omega * largest / o.slowest) ** 2
             off = OFF / ASIDE * math.sqrt(1.0 + o.impacts_left + o.impacts_right)
             known, found = end_with_places(e.law, t, i, w.ends, w.matrix, w.logs), w.multipliers[i]
-            count = known
             if which == BESIDE:
-                count = min(count, found.count)
-            elif count > len(t.growth) and not has_turned(t, w.axes[i], w.ends):
-                count = len(t.growth)
+                count = min(known, found.count)
+            else:
+                count = count_vectors(e.law, t, w.axes[i], w.ends, known)
             set_product(t, i, w.axes[i], w.ends, count, w.product)
             solved = find_multipliers(w.product, w.logs[:count], w.matrix, graze, off, found, w.beside[i], which)
             if not (solved or which == BESIDE):
@@ -122,23 +120,6 @@ def find_direction(t, i, axes, direction):
         direction[m] = axes[columns * m]
         for k in range(1, columns):
             direction[m] += t.shear[place_of(columns, 0, k), i] * axes[columns * m + k]
-
-
-@jit
-def has_turned(t, begins, ends):
-    """Whether the vectors span other directions than a period ago, as where their last multiplier is one of a complex
-    pair: then the vector that moves a stop alone, the last one, has to be counted. begins, ends: as of `set_product`.
-    """
-    size, columns = len(t.growth), columns_of(t)
-    for j in range(size):
-        for row in range(0, len(ends), columns):
-            apart = ends[row + j]
-            for k in range(size):
-                for m in range(0, len(ends), columns):
-                    apart -= begins[row + k] * begins[m + k] * ends[m + j]
-            if abs(apart) > TURNED:
-                return True
-    return False
 
 
 @jit

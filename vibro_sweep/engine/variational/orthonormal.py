@@ -68,16 +68,14 @@ def combine_places(t, who):
     """Combine what the vectors do to the places of stops as the vectors themselves."""
     size = len(t.growth)
     for m in range(0, len(t.places) - size + 1, size):
-        for lane in range(LANES):
-            if bits(who) >> lane & 1:
-                n = 0
-                for i in range(size):
-                    for j in range(i + 1, size):
-                        t.places[m + j, lane] -= t.normal[n, lane] * t.places[m + i, lane]
-                        n += 1
-                for i in range(size):
-                    square = t.square_length[i, lane]
-                    t.places[m + i, lane] = t.places[m + i, lane] / math.sqrt(square) if square > 0.0 else 0.0
+        n = 0
+        for i in range(size):
+            place, square = row(t.places, m + i), row(t.square_length, i)
+            for j in range(i + 1, size):
+                other = row(t.places, m + j)
+                put(t.places, m + j, select(who, other - row(t.normal, n) * place, other))
+                n += 1
+            put(t.places, m + i, select(who, select(square > 0.0, place / math.sqrt(square), 0.0), place))
 
 
 @inline

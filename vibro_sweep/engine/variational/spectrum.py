@@ -10,7 +10,7 @@ import numpy as np
 
 from vibro_sweep.engine.compliant.law import is_at_rest
 from vibro_sweep.engine.point_tables import divergence_of
-from vibro_sweep.engine.simd.jit import jit
+from vibro_sweep.engine.simd.jit import inline, jit
 from vibro_sweep.engine.variational import tangent, tangent_at_rest, tangent_flight
 from vibro_sweep.engine.variational.orthonormal import CONDITION
 from vibro_sweep.model import exponents, status
@@ -160,8 +160,7 @@ def close_spectrum(e, o, w, plan, point, result):
             error[j] = 0.0
     for j in range(len(spectrum)):
         error[j] += point.rounding if spectrum[j] > -np.inf else 0.0
-    if len(e.tangent[0].forgotten) > 1:
-        widen_forgotten(e.tangent[0], o.lane, result, time)
+    widen_forgotten(e.law, e.tangent[0], o.lane, result, time)
     exact = divergence_of(point, w.paper, w.other) + o.log_volume / time
     if plan.order == 0:
         left, right = o.impacts_left, o.impacts_right
@@ -186,16 +185,17 @@ def close_spectrum(e, o, w, plan, point, result):
             widen_last(result, abs(residual) * time)
 
 
-@jit
-def widen_forgotten(t, i, result, time):
+@inline
+def widen_forgotten(law, t, i, result, time):
     """Add what stops that are at rest to rounding might do where contacts shrink vectors by more than that."""
-    spectrum, error = result.lyapunov, result.lyapunov_error
-    for j in range(len(spectrum)):
-        if t.forgotten[j, i] > 0.0 and spectrum[j] > -np.inf:
-            error[j] += t.forgotten[j, i] / time
-            if result.period > 0:
-                most = math.expm1(min(t.forgotten[j, i], MOST_FORGOTTEN))
-                result.multiplier_error[j] += most * math.hypot(result.multiplier_re[j], result.multiplier_im[j])
+    if law is not None:
+        spectrum, error = result.lyapunov, result.lyapunov_error
+        for j in range(len(spectrum)):
+            if t.forgotten[j, i] > 0.0 and spectrum[j] > -np.inf:
+                error[j] += t.forgotten[j, i] / time
+                if result.period > 0:
+                    most = math.expm1(min(t.forgotten[j, i], MOST_FORGOTTEN))
+                    result.multiplier_error[j] += most * math.hypot(result.multiplier_re[j], result.multiplier_im[j])
 
 
 @jit
