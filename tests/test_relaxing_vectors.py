@@ -3,8 +3,7 @@
 import numpy as np
 from mpmath import mp
 
-from vibro_sweep.engine.compliant.section_vectors import invert
-from vibro_sweep.engine.compliant.tangent_in_contact import factorise
+from vibro_sweep.engine.compliant.rotations import factorise, invert
 from vibro_sweep.engine.simd.jit import exported
 
 

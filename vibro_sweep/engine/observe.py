@@ -125,7 +125,7 @@ def keep_record(e, w, plan, point, result, section, phase, running, o):
                 section[n, j] = states[n, j]
     result.resting = o.resting
     if plan.states:
-        result.period = find_period(states, o, w.axes[o.lane], rounding_of(o, plan))
+        result.period = find_period(states, o, w.state, rounding_of(o, plan))
     for n in range(len(running)):
         for j in range(numbers):
             running[n, j] = growth[n, j] / (periods_read(n, len(running), plan.record) * T)
@@ -172,7 +172,7 @@ def close(e, w, plan, points, results):
         if plan.states and o.status == status.OK:
             states = w.section[i]
             settled = has_settled(
-                result.period, states, o, w.axes[i], rounding_of(o, plan), result.lyapunov, result.lyapunov_error
+                result.period, states, o, w.state, rounding_of(o, plan), result.lyapunov, result.lyapunov_error
             )
             result.period = max(result.period, 0)
             if settled and plan.attractors:

@@ -52,9 +52,9 @@ class Workspace(NamedTuple):
     carried: np.ndarray  # (LANES,) POINT: whose oscillators the columns of `strike` and `tangent` hold
     section: np.ndarray  # (orbits, record, 2 N)
     growth: np.ndarray  # (LANES, parts, 2 N)
-    state: np.ndarray  # (2 N,)
+    state: np.ndarray  # (2 N,), room for numbers of one orbit
     # of multipliers.py, with n = 2 N vectors of as many numbers, or one more of 2 N + 2 numbers with compliant stops:
-    axes: np.ndarray  # (LANES, vectors * numbers), and
+    axes: np.ndarray  # (LANES, numbers, vectors), and
     ends: np.ndarray  # those of one orbit
     beside: np.ndarray  # (LANES, 3, n)
     logs: np.ndarray  # (n,)
@@ -77,8 +77,8 @@ def new_workspace(plan: Plan, cells: int, samples: int, orbits: int = LANES, kin
         np.empty((orbits, plan.record if plan.states else 0, states)),
         np.empty((LANES, plan.parts, states)),
         np.empty(states),
-        np.empty((LANES, vectors * numbers)),
-        np.empty(vectors * numbers),
+        np.empty((LANES, numbers, vectors)),
+        np.empty((numbers, vectors)),
         np.empty((LANES, 3, vectors)),
         np.empty(vectors),
         np.empty((vectors, vectors)),

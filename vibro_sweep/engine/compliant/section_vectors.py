@@ -10,13 +10,14 @@ with c the speed that a touch at the section would take from the mass for each u
 
 The place of the stop that was touched last follows from the state. That of the other one, while it relaxes, is a number
 of its own, and motion has one multiplier more than there are states: to Z comes the vector that moves this stop
-`alone`. The touch of this stop turns it into one that moves the other stop alone (tangent_in_contact.py).
+`alone`. The touch of this stop turns it into one that moves the other stop alone (touch_while_relaxing.py).
 """
 
 import math
 
 from vibro_sweep.engine.compliant.law import lane_of
 from vibro_sweep.engine.compliant.relaxing import place_at
+from vibro_sweep.engine.compliant.rotations import invert, rotate
 from vibro_sweep.engine.simd.jit import inline, jit
 from vibro_sweep.engine.variational.orthonormal import collect, columns_of, orthonormalise_closely, place_of
 from vibro_sweep.engine.variational.tangent import log_growth
@@ -31,7 +32,8 @@ def begin_with_places(law, t, i, o, width, E, R):
         begin_in_contact(law.orbits[i], t, i, o, width, E, R)
     else:
         for m in range(len(E)):
-            E[m] = t.Z[m, i]
+            for j in range(len(E)):
+                E[m, j] = t.Z[len(E) * m + j, i]
 
 
 @inline
@@ -43,7 +45,8 @@ def end_with_places(law, t, i, E, R, logs):
         count = end_in_contact(law.orbits[i], t, i, E, R)
     else:
         for m in range(len(E)):
-            E[m] = t.Z[m, i]
+            for j in range(len(E)):
+                E[m, j] = t.Z[len(E) * m + j, i]
     for j in range(len(t.growth)):
         logs[j] = log_growth(t, j, i)
     if count > len(t.growth):
@@ -61,11 +64,11 @@ def count_vectors(law, t, begins, ends, known):
 
 @jit
 def copy_vectors(t, i, E):
-    """The columns of Z, flat, and after them zeros."""
-    size, columns = len(t.growth), columns_of(t)
-    for m in range(len(E) // columns):
-        for j in range(columns):
-            E[columns * m + j] = t.Z[size * m + j, i] if m < size and j < size else 0.0
+    """The columns of Z, and after them zeros."""
+    size = len(t.growth)
+    for m in range(len(E)):
+        for j in range(columns_of(t)):
+            E[m, j] = t.Z[size * m + j, i] if m < size and j < size else 0.0
 
 
 @jit
@@ -136,72 +139,45 @@ def orthonormalise_with_places(contact, t, i, E, R):
     size, columns = len(t.growth), columns_of(t)
     free = 0 if t.alone[0, i] != 0.0 else 1
     for j in range(size):
-        for m in range(len(E) // columns):
-            E[columns * m + j] = 1.0 if m == j else 0.0
+        for m in range(len(E)):
+            E[m, j] = 1.0 if m == j else 0.0
         for k in range(size):
             R[j, k] = 1.0 if j == k else 0.0
     for n in (1 - free, free):
-        for m in range(len(E) // columns):
-            E[columns * m + size] = 1.0 if m == size + n else 0.0
+        for m in range(len(E)):
+            E[m, size] = 1.0 if m == size + n else 0.0
         for j in range(size):
             R[size, j] = contact.unit[n] * t.places[size * n + j, i]
         for j in range(size):
             if R[size, j] != 0.0:
-                rotate_up(E, R, j, columns)
-    place = columns * (size + free)
+                rotate(R, E, j, j, size)
     for j in range(columns):
-        R[j, size], R[size, j] = contact.unit[free] * t.alone[free, i] * E[place + j], 0.0
-    R[size, size] = contact.unit[free] * E[place + size]
+        R[j, size], R[size, j] = contact.unit[free] * t.alone[free, i] * E[size + free, j], 0.0
+    R[size, size] = contact.unit[free] * E[size + free, size]
     for j in range(columns):
         for m in range(size):
             contact.before[m] = 0.0
             for k in range(size):
-                contact.before[m] += t.Z[size * m + k, i] * E[columns * k + j]
+                contact.before[m] += t.Z[size * m + k, i] * E[k, j]
         for m in range(size):
-            E[columns * m + j] = contact.before[m]
-    for m in range(size, len(E), columns):
-        E[m] *= t.alone[free, i]
+            E[m, j] = contact.before[m]
+    for m in range(len(E)):
+        E[m, size] *= t.alone[free, i]
     return columns if R[size, size] * t.alone[free, i] != 0.0 else size
-
-
-@jit
-def rotate_up(E, R, j, columns):
-    """Rotate entry j of the last row of R into its diagonal, and the columns of E with it."""
-    last, x = columns - 1, R[j, j]
-    length = math.hypot(x, R[last, j])
-    cos, sin = x / length, R[last, j] / length
-    for k in range(j, last):
-        x, y = R[j, k], R[last, k]
-        R[j, k], R[last, k] = cos * x + sin * y, cos * y - sin * x
-    for m in range(0, len(E), columns):
-        x, y = E[m + j], E[m + last]
-        E[m + j], E[m + last] = cos * x + sin * y, cos * y - sin * x
-
-
-@jit
-def invert(R, size):
-    """R^-1 in place of an upper triangular matrix R."""
-    for j in range(size):
-        R[j, j] = 1.0 / R[j, j]
-        for k in range(j):
-            total = 0.0
-            for m in range(k, j):
-                total += R[k, m] * R[m, j]
-            R[k, j] = -R[j, j] * total
 
 
 @jit
 def has_turned(t, begins, ends):
     """Whether the vectors span other directions than a period ago, as where their last multiplier is one of a complex
-    pair: then the vector that moves a stop alone, the last one, has to be counted. begins, ends: the vectors, flat.
+    pair: then the vector that moves a stop alone, the last one, has to be counted.
     """
-    size, columns = len(t.growth), columns_of(t)
+    size = len(t.growth)
     for j in range(size):
-        for row in range(0, len(ends), columns):
-            apart = ends[row + j]
+        for row in range(len(ends)):
+            apart = ends[row, j]
             for k in range(size):
-                for m in range(0, len(ends), columns):
-                    apart -= begins[row + k] * begins[m + k] * ends[m + j]
+                for m in range(len(ends)):
+                    apart -= begins[row, k] * begins[m, k] * ends[m, j]
             if abs(apart) > TURNED:
                 return True
     return False

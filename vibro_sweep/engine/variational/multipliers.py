@@ -117,20 +117,20 @@ def find_direction(t, i, axes, direction):
     """The first row of U Q_0^T."""
     columns = columns_of(t)
     for m in range(len(t.growth)):
-        direction[m] = axes[columns * m]
+        direction[m] = axes[m, 0]
         for k in range(1, columns):
-            direction[m] += t.shear[place_of(columns, 0, k), i] * axes[columns * m + k]
+            direction[m] += t.shear[place_of(columns, 0, k), i] * axes[m, k]
 
 
 @jit
 def set_product(t, i, begins, ends, count, product):
-    """U Q_0^T Q_1 of so many vectors. begins, ends: columns of Q_0 and of Q_1, flat."""
+    """U Q_0^T Q_1 of so many vectors, the columns of Q_0 and Q_1."""
     columns = columns_of(t)
     for row in range(count):
         for column in range(count):
             total = 0.0
             for k in range(row, count):
                 weight = 1.0 if k == row else t.shear[place_of(columns, row, k), i]
-                for m in range(0, len(ends), columns):
-                    total += weight * begins[m + k] * ends[m + column]
+                for m in range(len(ends)):
+                    total += weight * begins[m, k] * ends[m, column]
             product[row, column] = total

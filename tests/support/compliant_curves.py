@@ -1,0 +1,77 @@
+"""Curves of bifurcations of random oscillators with compliant stops, from several points and with several lengths of
+steps.
+
+python tests/support/compliant_curves.py 0 100            # seeds; prints what disagrees, and a summary
+"""
+
+import collections
+import sys
+
+import numpy as np
+
+import vibro_sweep as vs
+from support.compliant_branches import drawn_case
+from support.curves import chosen
+from support.random_curves import TYPES, key, special_at, steps_of
+from support.same_branch import TooLongError, follow
+
+OTHERS = ("omega", "b", "zeta", "k_stop")  # the other number: the first that is not the branch's
+BESIDE = 0.1, 0.05  # of both numbers, within which a curve is followed
+SAME = 1e-8  # of the numbers of a point of codimension two
+
+
+def study(seed: int, most=2) -> tuple[collections.Counter, list[str]]:
+    """What was counted, and what is wrong, of the curves through special points of one drawn branch."""
+    counted, wrong, case = collections.Counter(drawn=1), [], drawn_case(seed)
+    if case is None:
+        return counted, wrong
+    try:
+        branch = follow(case)
+    except TooLongError:
+        return counted, wrong
+    rng = np.random.default_rng(seed + 10**6)
+    other = next(name for name in OTHERS if name != case.name and case.orbit.system.numbers.get(name))
+    for special in [one for one in branch.special if one.type in TYPES][:most]:
+        names = case.name, other
+        values = special.parameters[case.name], special.orbit.system.numbers[other]
+        reach = [part * abs(value) for part, value in zip(BESIDE, values, strict=True)]
+        bounds = [(value - by, value + by) for value, by in zip(values, reach, strict=True)]
+        where = f"seed {seed}, {special.type} at {case.name} = {values[0]!r} with {other}"
+        counted["begun"] += 1
+        try:
+            curve = vs.bifurcation_curve(special, names, bounds)
+        except ValueError as error:
+            wrong.append(f"{where}: {error}")
+            continue
+        counted.update(curves=1, points=curve.points.sizes["point"])
+        counted.update(one.type for one in curve.special)
+        wrong += [f"{where}: failed at {one.parameters}" for one in curve.special if one.type == "failed"]
+        ways = []
+        for factor in (0.5, 2.0):
+            with steps_of(factor):
+                ways.append((f"steps times {factor}", vs.bifurcation_curve(special, names, bounds)))
+        k = int(rng.choice(chosen(curve, 9)))
+        ways.append((f"from point {k}", vs.bifurcation_curve(special_at(curve, k, special), names, bounds)))
+        counted["again"] += len(ways)
+        for way, again in ways:
+            pairs = [sorted(map(key, one.special)) for one in (curve, again)]
+            same = len(pairs[0]) == len(pairs[1]) and all(
+                a[0] == b[0] and np.allclose(a[1:], b[1:], rtol=SAME, atol=0) for a, b in zip(*pairs, strict=True)
+            )
+            if not curve.closed and not same:
+                wrong.append(f"{where}: other points {way}: {pairs}")
+    return counted, wrong
+
+
+def main(first: int, last: int) -> None:
+    total, seeds = collections.Counter(), 0
+    for seed in range(first, last):
+        counted, wrong = study(seed)
+        total += counted
+        seeds += bool(wrong)
+        print(*wrong, sep="\n", end="\n" * bool(wrong), flush=True)
+    print(f"{dict(total)}\n{seeds} seeds with a disagreement")
+
+
+if __name__ == "__main__":
+    main(*map(int, sys.argv[1:3]))
