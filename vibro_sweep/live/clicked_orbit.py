@@ -19,6 +19,7 @@ from vibro_sweep.scene import Scene, Section
 SAMPLES = 200  # in a forcing period
 MOST_SHOWN, UNSETTLED = 60, 8  # forcing periods: of a periodic orbit, of another one
 LONGEST = 500  # forcing periods of which impacts are counted
+RELAXING = 300  # forcing periods passed first where stops relax: where these are is not part of a state
 
 
 class Settled(NamedTuple):
@@ -43,11 +44,15 @@ def settled(view: View, value: float, start: int, end: np.ndarray | None) -> Set
     )
     system = scene.system.replace(**{view.axis: value})
     if end is not None:
-        one = scene.replace(system=system, sweep=None, start=end, transient=0)
+        one = scene.replace(system=system, sweep=None, start=end, transient=_lead(system))
     else:
         alone = None if scene.start.kind != "follow" else scene.start.state
         one = scene.replace(system=system, sweep=None, **({} if alone is None else {"start": alone}))
     return _computed(one, system, start, scene.start.kind == "follow" and end is None)
+
+
+def _lead(system: AnyOscillator) -> int:
+    return RELAXING if system.linear.by_force else 0
 
 
 def _computed(scene: Scene, system: AnyOscillator, start: int, alone: bool) -> Settled:
@@ -71,23 +76,26 @@ def orbit_message(found: Settled) -> tuple[dict[str, np.ndarray], dict[str, Any]
     if found.mapping or not is_valid(found.status):
         return arrays, words | {"periods": 0}
     T, periods = system.period, min(found.period, MOST_SHOWN) if found.period else UNSETTLED
-    orbit = simulate(system, found.end, max(periods, min(found.period, LONGEST)))
-    impacts = orbit.impacts
+    begin = _lead(system) * T
+    orbit = simulate(system, found.end, _lead(system) + max(periods, min(found.period, LONGEST)))
+    impacts = orbit.impacts[orbit.impacts["t"] >= begin]
+    impacts["t"] -= begin
     if found.period:  # an impact at t = 0 comes again at the end
         impacts = impacts[impacts["t"] < found.period * T * (1 - 1e-9)]
     shown = impacts[impacts["t"] <= periods * T]
-    touch, release = (np.nan_to_num(orbit.contacts[name], nan=np.inf) for name in ("t_touch", "t_release"))
-    drawn = touch <= periods * T
-    pressed = touch[drawn], np.minimum(release[drawn], periods * T)
+    touch, release = (np.nan_to_num(orbit.contacts[name], nan=np.inf) - begin for name in ("t_touch", "t_release"))
+    drawn = (touch <= periods * T) & (release > 0)
+    pressed = np.maximum(touch[drawn], 0.0), np.minimum(release[drawn], periods * T)
     times = np.unique(np.concatenate([np.linspace(0, periods * T, periods * SAMPLES + 1), shown["t"], *pressed]))
-    states = orbit.sample(times)
-    words |= {"periods": periods, "impacts": len(impacts), "rests": len(orbit.sticking)}
+    states = orbit.sample(np.minimum(begin + times, orbit.section_times[-1]))
+    rests = np.count_nonzero(orbit.sticking["t_off"] >= begin)
+    words |= {"periods": periods, "impacts": len(impacts), "rests": rests}
     words |= {"itinerary": _itinerary(impacts, T, found.period), "orbit_status": str(orbit.status)}
     arrays |= {"t": times.astype("f4"), "states": states.astype("f4").ravel()}
     arrays |= {"impact_t": shown["t"].astype("f4"), "impact_side": shown["side"].astype("i1")}
     arrays |= {"contact_touch": pressed[0].astype("f4"), "contact_release": pressed[1].astype("f4")}
     ended = found.period * T * (1 - 1e-9) if found.period else np.inf
-    return arrays, words | {"contacts": int(np.count_nonzero(touch < ended))}
+    return arrays, words | {"contacts": int(np.count_nonzero((touch >= 0) & (touch < ended)))}
 
 
 def _itinerary(impacts: np.ndarray, T: float, period: int) -> str:

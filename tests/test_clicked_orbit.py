@@ -1,0 +1,31 @@
+"""The orbit at a click, without a page."""
+
+import numpy as np
+
+from vibro_sweep.live.clicked_orbit import orbit_message, settled
+from vibro_sweep.live.views import view_of
+from vibro_sweep.scene.scene import scene_of
+
+SCENE = {
+    "system": {
+        "type": "one_mass", "zeta": 0.03, "F": 1, "omega": 0.8, "b": 0.5, "tau": 0.3,
+        "k_stop": 10, "c_stop": 12, "release": "force",
+    },
+    "sweep": {"b": {"start": 0.02, "stop": 0.2, "num": 16}},
+    "orbit": {"transient": 1000, "record": 60},
+}  # fmt: skip
+
+
+def test_an_orbit_goes_on_where_its_stops_relax():
+    """Where they are is not part of the state in which it ended."""
+    view = view_of(scene_of(SCENE, "scene"))
+    alone = settled(view, 0.1, 0, None)
+    found = settled(view, 0.1, 0, alone.end)
+    assert found.period == alone.period == 1
+    np.testing.assert_allclose(found.exponents, alone.exponents, rtol=0, atol=1e-9)
+    arrays, words = orbit_message(found)
+    states = arrays["states"].reshape(-1, 2)
+    np.testing.assert_allclose(states[-1], states[0], rtol=0, atol=1e-6)
+    np.testing.assert_allclose(states[0], found.section[-1], rtol=0, atol=1e-6)
+    assert (words["contacts"], words["impacts"], words["rests"]) == (2, 0, 0)
+    assert np.all((arrays["contact_touch"] >= 0) & (arrays["contact_release"] > arrays["contact_touch"]))
