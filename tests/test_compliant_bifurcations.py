@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from support import compliant_branches, slow_cases
+from support import compliant_branches, compliant_curves, slow_cases
 from support.compliant_bifurcations import (
     BRANCHES,
     CONDITIONS,
@@ -247,3 +247,13 @@ def test_random_branches_from_several_starts(seeds):
         assert not wrong
         counted += found["branches"]
     assert counted > 0.6 * len(seeds)
+
+
+@pytest.mark.parametrize("seeds", [*slow_cases(range(20)), pytest.param(range(120), marks=pytest.mark.soak)])
+def test_random_curves_with_steps_of_other_lengths(seeds):
+    counted = 0
+    for seed in seeds:
+        found, wrong = compliant_curves.study(seed)
+        assert not wrong
+        counted += found["curves"]
+    assert counted > 0.4 * len(seeds)

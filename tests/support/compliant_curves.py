@@ -1,5 +1,4 @@
-"""Curves of bifurcations of random oscillators with compliant stops, from several points and with several lengths of
-steps.
+"""Curves of bifurcations of random oscillators with compliant stops, with several lengths of steps.
 
 python tests/support/compliant_curves.py 0 100            # seeds; prints what disagrees, and a summary
 """
@@ -11,8 +10,7 @@ import numpy as np
 
 import vibro_sweep as vs
 from support.compliant_branches import drawn_case
-from support.curves import chosen
-from support.random_curves import TYPES, key, special_at, steps_of
+from support.random_curves import TYPES, key, steps_of
 from support.same_branch import TooLongError, follow
 
 OTHERS = ("omega", "b", "zeta", "k_stop")  # the other number: the first that is not the branch's
@@ -29,7 +27,6 @@ def study(seed: int, most=2) -> tuple[collections.Counter, list[str]]:
         branch = follow(case)
     except TooLongError:
         return counted, wrong
-    rng = np.random.default_rng(seed + 10**6)
     other = next(name for name in OTHERS if name != case.name and case.orbit.system.numbers.get(name))
     for special in [one for one in branch.special if one.type in TYPES][:most]:
         names = case.name, other
@@ -50,8 +47,6 @@ def study(seed: int, most=2) -> tuple[collections.Counter, list[str]]:
         for factor in (0.5, 2.0):
             with steps_of(factor):
                 ways.append((f"steps times {factor}", vs.bifurcation_curve(special, names, bounds)))
-        k = int(rng.choice(chosen(curve, 9)))
-        ways.append((f"from point {k}", vs.bifurcation_curve(special_at(curve, k, special), names, bounds)))
         counted["again"] += len(ways)
         for way, again in ways:
             pairs = [sorted(map(key, one.special)) for one in (curve, again)]
