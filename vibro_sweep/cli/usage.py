@@ -86,7 +86,7 @@ def _option_meant(word: str, context) -> str:
 
 def _file_meant(name: str) -> str | None:
     """A file that exists and is called like it."""
-    for ending in (".yaml", ".yml", ".h5"):
+    for ending in (".part", ".yaml", ".yml", ".h5"):
         if Path(name + ending).exists():
             return name + ending
     folder = Path(name).parent

@@ -120,7 +120,7 @@ def loss_of(hits, stops, mass):
 def with_log(law, log):
     """The compliant stops, with room for their contacts."""
     if law is not None:
-        return Law(law.orbits, log, law.passage)
+        return Law(law.orbits, log, law.passage, law.halt)
     return None
 
 

@@ -174,6 +174,13 @@ class Engine:
         return values
 
     @property
+    def steps(self) -> int:
+        """Of a period at most: its cells, or the steps of contacts that last."""
+        law = self.ensemble.law
+        fine = 1.0 if law is None else max(self.width / float(law.orbits["step"][0].min()), 1.0)
+        return int(min(self.cells * fine, 1e18))
+
+    @property
     def compliant(self) -> tuple[bool, bool]:
         """Whether the left stop is, and the right one."""
         q = self.system.linear

@@ -44,7 +44,8 @@ STATUSES = {
         "rates_too_far_apart",
         "the fastest time constant is too short compared with the forcing period",
         "The fastest time constant is shorter than 10^-7 of a period. Check that all numbers are in one system of "
-        "units. Leave out modes as fast as that (modal truncation), or lower their damping.",
+        "units. Leave out modes as fast as that (modal truncation), or lower their damping; of a compliant stop that "
+        "holds the mass for long lower `c_stop`.",
     ),
     UNRESOLVED: Status(
         "contact_unresolved",

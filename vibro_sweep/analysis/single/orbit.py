@@ -216,7 +216,7 @@ def simulate(system: AnyOscillator, state: ArrayLike, periods: int, start_time: 
         section[0] = begin
     done = 0 if inside else 1
     hits, rests, contacts, chatters, outcome = interruptible(
-        _carried, engine, section[done:], halt=engine.ensemble.halt, cells=engine.cells * periods
+        _carried, engine, section[done:], halt=engine.ensemble.halt, cells=engine.steps * periods
     )
     if outcome != status.OK:
         reached = int(engine.orbit["period"][0]) - math.ceil(start_time / engine.period)
@@ -296,7 +296,7 @@ def lyapunov(system: AnyOscillator, state: ArrayLike, transient: int = 1000, rec
     kept = nothing[..., None], nothing, nothing[..., None]
     interruptible(
         points.run_points, steps, starts, results, *kept, workspace, plan, None,
-        halt=workspace.ensemble.halt, cells=engine.cells * (transient + record),
+        halt=workspace.ensemble.halt, cells=engine.steps * (transient + record),
     )  # fmt: skip
     point = results[0, 0]
     return Exponents(point["lyapunov"], point["lyapunov_error"], point["lyapunov_residual"])

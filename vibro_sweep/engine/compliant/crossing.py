@@ -28,6 +28,7 @@ from vibro_sweep.engine.tables.flight import bounds, load
 from vibro_sweep.engine.tables.resting import bound_third_over
 from vibro_sweep.model import status
 
+LARGEST = 1e100  # of a state: its square has to be a number
 NEAR = 8.0 * 2.0**-52  # of the place of a stop, or the depth of its preload: lower bounces are a rest on it
 
 
@@ -36,6 +37,8 @@ def cross_cell_with_law(law, f, stops, o, records, t, k, s):
     """Follow the orbit from offset s in cell k to the cell's end, through all that happens. Returns a status."""
     q, node, X, c1, contact = f.oscillator[0], f.nodes[k], o.X, o.c[0], law.orbits[o.lane]
     released, hit, leaving, order = False, 0.0, 0.0, 0
+    if not (abs(X[0]) < LARGEST and abs(X[1]) < LARGEST):
+        return status.NOT_FINITE
     if s == 0.0:
         begin_finely(o, k)
     if contact.pressed == 0.0:
@@ -58,6 +61,8 @@ def cross_cell_with_law(law, f, stops, o, records, t, k, s):
                 return status.UNRESOLVED
             if d == np.inf:
                 return status.OK
+            if d < 0.0:
+                return status.TOO_STIFF
             s += d
             if not pressed:
                 turn_phase(contact, q.omega, d)

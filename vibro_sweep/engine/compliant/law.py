@@ -34,6 +34,7 @@ class Law(NamedTuple):
     # into the stop at both, largest delta, and largest force
     log: np.ndarray
     passage: np.ndarray  # (1,) `passages_of`
+    halt: np.ndarray  # that of the ensemble
 
 
 def law_of(masses: int) -> np.dtype:
@@ -99,12 +100,12 @@ def law_of(masses: int) -> np.dtype:
     return record(fields)
 
 
-def new_law(kind: Kind, room: int = 0) -> Law | None:
+def new_law(kind: Kind, halt: np.ndarray, room: int = 0) -> Law | None:
     """None where all stops are rigid."""
     if not kind.compliant:
         return None
     passage = new_lines(1, passages_of(kind.masses, kind.constant))
-    return Law(new_lines(LANES, law_of(kind.masses)), np.empty((LANES, room, LOGGED)), passage)
+    return Law(new_lines(LANES, law_of(kind.masses)), np.empty((LANES, room, LOGGED)), passage, halt)
 
 
 @jit

@@ -25,6 +25,9 @@ from vibro_sweep.engine.variational import tangent_flight
 
 # by how much one matrix may shrink vectors, as a logarithm: what shrinks more is lost beside what does not
 MOST_SHRUNK = 2.0
+MOST_STEPS = 2**20  # in a cell: a tenth of a second
+BETWEEN_LOOKS = 2**14  # steps, at `halt`
+TOO_MANY = -1.0
 
 
 @jit
@@ -59,13 +62,16 @@ def begin_contact(law, f, stops, o, t, k, s, side, on_stop):
 
 @jit
 def stay_in_contact(law, f, stops, o, records, t, k, s):
-    """Contact from offset s of cell k on. Returns the time to its end, infinite if not in this cell."""
+    """Contact from offset s of cell k on. Returns the time to its end, infinite if not in this cell, or `TOO_MANY`."""
     q, contact, side, w = f.oscillator[0], law.orbits[o.lane], law.orbits[o.lane].pressed, 0.0
-    n, carried = lane_of(side), 0.0  # so far tangent vectors are
+    n, carried, steps = lane_of(side), 0.0, 0  # carried: so far tangent vectors are
     contact.work -= stored_energy(contact, n)
     if t.wanted:
         begin_matrix(contact)
     while True:
+        steps += 1
+        if steps > MOST_STEPS or (steps % BETWEEN_LOOKS == 0 and law.halt[0] != 0):
+            return TOO_MANY
         load_contact(contact, side, q.omega)
         left = q.width - s - w
         last = left <= 1.001 * contact.step[n]

@@ -40,6 +40,7 @@ class Readings(NamedTuple):
 def new_ensemble(cells: int, kind: Kind, impacts: int = 0, rests: int = 0, samples: int = 0) -> Ensemble:
     """Orbits of oscillators with at most so many cells, and room for what is kept of each."""
     masses, constant, paper = kind[:3]
+    halt = halt_of_thread()
     orbits = new_lines(LANES, orbit_of(masses, constant))
     orbits["lane"] = np.arange(LANES)
     return Ensemble(
@@ -48,8 +49,8 @@ def new_ensemble(cells: int, kind: Kind, impacts: int = 0, rests: int = 0, sampl
         new_lines(1, strikes_of(masses, constant)),
         new_lines(1, tangents_of(masses, paper, kind.compliant)),
         new_records(LANES, impacts, rests, samples, masses),
-        halt_of_thread(),
-        new_law(kind),
+        halt,
+        new_law(kind, halt),
     )
 
 

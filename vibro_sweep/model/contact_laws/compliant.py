@@ -1,7 +1,9 @@
 """The compliant stop: a spring and a damper side by side, without mass, which a preload may press together."""
 
 from vibro_sweep.model.contact_laws.contact_law import ContactLaw, Option
-from vibro_sweep.model.parameter import NOT_NEGATIVE, POSITIVE, Parameter
+from vibro_sweep.model.parameter import NOT_NEGATIVE, POSITIVE, Parameter, Range
+
+MODERATE = Range("a number from 0 to 1e100", {"minimum": 0, "maximum": 1e100})  # its square has to be a number
 
 STIFFNESS = Parameter(
     "k_stop", r"k_{\mathrm{stop}}", "N m-1", POSITIVE, "stiffness of the stop",
@@ -12,7 +14,7 @@ DAMPING = Parameter(
     "damping of a compliant stop; left out: 0", optional=True,
 )  # fmt: skip
 PRELOAD = Parameter(
-    "preload", r"p_{\mathrm{stop}}", "N", NOT_NEGATIVE, "preload of the stop",
+    "preload", r"p_{\mathrm{stop}}", "N", MODERATE, "preload of the stop",
     "force with which a compliant stop is pressed together before it is touched; left out: 0", optional=True,
 )  # fmt: skip
 NUMBERS = (STIFFNESS, DAMPING, PRELOAD)
