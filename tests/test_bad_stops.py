@@ -49,7 +49,7 @@ SCENES = {  # the scene, and what its message says
     "damping of a rigid stop": (scene("R: 0.8, c_stop: 1"), "system.c_stop", "belongs to a stop with k_stop"),
     "damping infinite": (scene(f"{SOFT}, c_stop: .inf"), "system.c_stop", "finite"),
     "preload without stiffness": (scene("R: 0.8, preload: 1"), "system.preload", "belongs to a stop with k_stop"),
-    "preload negative": (scene(f"{SOFT}, preload: -0.1"), "system.preload", ">= 0"),
+    "preload negative": (scene(f"{SOFT}, preload: -0.1"), "system.preload", "from 0"),
     "preload a word": (scene(f"{SOFT}, preload: some"), "system.preload", "number"),
     "preload of a rigid left stop": (
         scene(f"{SOFT}, R_left: 0.8, preload_left: 1"), "system.preload_left", "belongs to a stop with k_stop_left",
@@ -86,7 +86,10 @@ SCENES = {  # the scene, and what its message says
         scene("offset: 0", "sweep: {R: {values: [0.5]}, k_stop: {values: [5]}}"), "k_stop", "left out where R is given",
     ),
     "plane with a negative preload": (
-        scene(SOFT, "sweep: {b: {values: [4, 5]}, preload: {values: [0, -1]}}"), "sweep.preload", ">= 0",
+        scene(SOFT, "sweep: {b: {values: [4, 5]}, preload: {values: [0, -1]}}"), "sweep.preload", "from 0",
+    ),
+    "damping swept of a rigid stop": (
+        scene("R: 0.8", "sweep: {c_stop: {values: [0, 1]}}"), "sweep.c_stop", "belongs to a stop with k_stop",
     ),
     "map": (scene(SOFT, "dynamics: map"), "dynamics", "rigid"),
     "map with one rigid stop": (scene("R: 0.8, k_stop_left: 5", "dynamics: map"), "dynamics", "rigid"),

@@ -96,4 +96,5 @@ def system_of(form: Form, sweep, kind: str, masses: int) -> tuple[AnyOscillator 
         system = Oscillator.named(kind, **given)
         return system.replace(**first) if first else system, []
     except ParameterError as error:
-        return None, [problem(f"system.{error.key}", error.value, f"must be {error.allowed}")]
+        path = "sweep" if error.key in first else "system"
+        return None, [problem(f"{path}.{error.key}", error.value, f"must be {error.allowed}")]
