@@ -256,6 +256,8 @@ class Result:
         stops = self.settings.get("stops")
         if stops in ("right", "left"):
             numbers.append(f"{stops} stop only")
+        if self.settings.get("release") == "force":
+            numbers.append("release by force")
         missing = "" if self.done.all() else f"{self.done.sum()} of {self.done.size} points computed"
         kind = str(self.settings.get("type", "")).replace("_", " ")
         return "\n".join(
