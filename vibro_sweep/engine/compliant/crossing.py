@@ -10,7 +10,7 @@ from vibro_sweep.engine.compliant.contact_series import leaves_by_force
 from vibro_sweep.engine.compliant.distance import begin_finely, delta_of, set_delta
 from vibro_sweep.engine.compliant.force_phase import set_phase, turn_phase
 from vibro_sweep.engine.compliant.law import lane_of
-from vibro_sweep.engine.compliant.pressing import begin_contact, stay_in_contact
+from vibro_sweep.engine.compliant.pressing import TOO_MANY, begin_contact, stay_in_contact
 from vibro_sweep.engine.compliant.relaxing import bring_stops, reach_of_relaxing, relax_by, set_distance, speed_of_stop
 from vibro_sweep.engine.motion.first_contact import polished_contact, set_gap
 from vibro_sweep.engine.motion.impacts import (
@@ -61,7 +61,7 @@ def cross_cell_with_law(law, f, stops, o, records, t, k, s):
                 return status.UNRESOLVED
             if d == np.inf:
                 return status.OK
-            if d < 0.0:
+            if d == TOO_MANY:
                 return status.TOO_STIFF
             s += d
             if not pressed:

@@ -27,7 +27,7 @@ from vibro_sweep.engine.variational import tangent_flight
 MOST_SHRUNK = 2.0
 MOST_STEPS = 2**20  # in a cell: a tenth of a second
 BETWEEN_LOOKS = 2**14  # steps, at `halt`
-TOO_MANY = -1.0
+TOO_MANY = -1.0  # in place of a time
 
 
 @jit
