@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from mpmath import mp, mpf
 from reference.any_naive import simulate
-from reference.any_naive_map import AnyNaiveMap
+from reference.naive_map import AnyNaiveMap
 from scipy.linalg import expm
 from support.any_oscillators import drawn
 

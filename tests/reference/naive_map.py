@@ -1,8 +1,9 @@
 """The discontinuity mapping in mpmath, order by order, and the exact map that it approximates.
 
-A point X of the map is where the orbit would be at the phase of the right graze if the impact there had not been: the
-map's points may lie beyond the stops. So the exact map is: a quarter of a period of free flight back, to between the
-stops; one period of the oscillator as `naive.py` simulates it; a quarter of a period of free flight on.
+X holds x1, v1, ..., xN, vN. Nothing is tabulated: each flight is a matrix exponential. A point X of the map is where
+the orbit would be at the phase of the right graze if the impact there had not been: the map's points may lie beyond the
+stops. So the exact map is: a quarter of a period of free flight back, to between the stops; one period of the
+oscillator as `naive.py` simulates it; a quarter of a period of free flight on.
 """
 
 from mpmath import mp, mpf
@@ -11,53 +12,76 @@ from reference import naive
 from reference.gmp import expm
 
 
-class NaiveMap:
-    """P of the system `params` (tau plays no part), with its b = b* - shift; call it with a 4x1 matrix."""
+class AnyNaiveMap:
+    """P = Phi_{T/2} o C2 o Phi_{T/2} o C1 of a `Linear` whose numbers may be those of mpmath; call it with a column."""
 
-    def __init__(self, params, order, shift=None):
-        values = {name: mpf(params[name]) for name in naive.NAMES if name != "tau"}
-        mu_m, mu_k, zeta, omega = (values[name] for name in ("mu_m", "mu_k", "zeta", "omega"))
-        x1, x2 = naive.response({**values, "tau": 0})
-        M1 = [-1, -2 * zeta, 1, 2 * zeta]
-        M2 = [1 / mu_m, 2 * zeta / mu_m, -(1 + mu_k) / mu_m, -2 * zeta * (1 + mu_k) / mu_m]
-        self.A = mp.matrix([[0, 1, 0, 0], M1, [0, 0, 0, 1], M2])
-        self.order, self.R, self.omega = order, values["R"], omega
-        self.T = 2 * mp.pi / omega
-        self.L = expm(self.A * self.T / 2)
-        self.response, self.tau = (x1, x2), mp.atan2(x1.real, x1.imag)
+    def __init__(self, q, order, expand_at=None):
+        n = len(q.normal)
+        column = lambda values: mp.matrix([mpf(x) for x in values])  # noqa: E731
+        square = lambda rows: mp.matrix([[mpf(x) for x in row] for row in rows])  # noqa: E731
+        M, K, C = (square(matrix) for matrix in (q.M, q.K, q.C))
+        self.omega, self.order, self.q = mpf(q.omega), order, q
+        self.A = mp.zeros(2 * n)
+        inverse = mp.inverse(M)
+        for i in range(n):
+            self.A[2 * i, 2 * i + 1] = 1
+            for j in range(n):
+                self.A[2 * i + 1, 2 * j], self.A[2 * i + 1, 2 * j + 1] = -(inverse * K)[i, j], -(inverse * C)[i, j]
+        push = inverse * column(q.normal)
+        push /= (column(q.normal).T * push)[0]
+        self.push, self.normal = mp.zeros(2 * n, 1), mp.zeros(1, 2 * n)
+        for i in range(n):
+            self.push[2 * i + 1], self.normal[2 * i] = push[i], mpf(q.normal[i])
+        x = mp.lu_solve(K - self.omega**2 * M + 1j * self.omega * C, column(q.cosine) - 1j * column(q.sine))
+        response = sum(mpf(a) * b for a, b in zip(q.normal, x, strict=True))
+        self.amplitudes = x * mp.expj(-mp.arg(response))
         self.graze = self.steady(0)
-        self.b = self.graze[0] - shift if shift is not None else values["b"]
-        self.params = {**values, "b": self.b}
+        if expand_at is not None:
+            more = mpf(expand_at) - (self.normal * self.graze)[0]
+            for i in range(n):
+                self.graze[2 * i] += more * push[i]
+        self.L = expm(self.A * mp.pi / self.omega)
 
     def steady(self, t):
-        """The non-impacting motion."""
-        turn = mp.expj(self.omega * t + self.tau)
-        x1, x2 = (x * turn for x in self.response)
-        return mp.matrix([x1.imag, self.omega * x1.real, x2.imag, self.omega * x2.real])
+        """The non-impacting motion, which is furthest on the right at t = 0."""
+        x = self.amplitudes * mp.expj(self.omega * t)
+        return mp.matrix([part for one in x for part in (mp.re(one), -self.omega * mp.im(one))])
 
     def strike(self, X):
         """(psi, speed squared at the right stop, acceleration); there is an impact where the square is positive."""
-        psi, a = X[0] - self.b, -(self.omega**2) * self.graze[0]
+        psi, a = (self.normal * X)[0] - mpf(self.q.high), -(self.omega**2) * (self.normal * self.graze)[0]
         if self.order == 1:
             return psi, -2 * a * psi, a
-        a += (self.A * (X - self.graze))[1]
-        return psi, X[1] ** 2 - 2 * a * psi, a
+        a += (self.normal * self.A * self.A * (X - self.graze))[0]
+        return psi, (self.normal * self.A * X)[0] ** 2 - 2 * a * psi, a
 
     def C1(self, X):
+        """The impact at the right stop; eqs. (38), (39), and the next order."""
         _, square, a = self.strike(X)
-        if square <= 0:
+        if square <= 0 or a >= 0:
             return X
-        w, impulse = mp.sqrt(square), mp.matrix([0, 1, 0, 0])
+        w, impulse = mp.sqrt(square), self.push
         if self.order == 2:
-            impulse = expm(-self.A * (w - X[1]) / a) * impulse
-        return X - (1 + self.R) * w * impulse
+            impulse = expm(-self.A * (w - (self.normal * self.A * X)[0]) / a) * impulse
+        return X - (1 + mpf(self.q.R_high)) * w * impulse
 
     def middle(self, X):
         """Half a period on, before the left stop, and mirrored: the left stop is the right one then."""
         return self.graze - self.L * (self.C1(X) - self.graze)
 
     def __call__(self, X):
+        """Over a period, of stops that are mirror images."""
         return self.middle(self.middle(X))
+
+
+class NaiveMap(AnyNaiveMap):
+    """P of the paper's oscillator `params` (tau plays no part), with its b = b* - shift."""
+
+    def __init__(self, params, order, shift=None):
+        values = {name: mpf(params[name]) for name in naive.NAMES if name != "tau"}
+        super().__init__(naive.linear_of({**values, "tau": 0}), order)
+        self.b = self.q.high = self.graze[0] - shift if shift is not None else values["b"]
+        self.params = {**values, "b": self.b}
 
     def case(self, X):
         """Which of the two stops are hit: the four cases of (48)."""
@@ -65,10 +89,11 @@ class NaiveMap:
 
     def exact(self, X, digits=40):
         """(the next point by the oscillator itself, which stops were hit)."""
-        quarter = self.T / 4
+        quarter = mp.pi / (2 * self.omega)
         back, on = expm(-self.A * quarter), expm(self.A * quarter)
         start = self.steady(-quarter) + back * (X - self.graze)
-        orbit = naive.simulate({**self.params, "tau": self.tau - mp.pi / 2}, list(start), periods=1, digits=digits)
+        tau = naive.grazing(self.params, mp.dps)[1]
+        orbit = naive.simulate({**self.params, "tau": tau - mp.pi / 2}, list(start), periods=1, digits=digits)
         end = mp.matrix(orbit.section[-1])
         sides = [hit.side for hit in orbit.impacts]
         return self.graze + on * (end - self.steady(-quarter)), (1 in sides, -1 in sides)
