@@ -58,7 +58,10 @@ def test_kinds(data):
 def test_a_loop_has_the_force_of_the_file(data):
     fig = figure(data, "contact-force")
     largest = [np.nanmax(line.get_ydata()) for ax in fig.axes[0::2] for line in ax.lines[:1]]
-    assert largest == pytest.approx(data.contact_force_max.values, rel=0.05)  # at the touch
+    assert largest == pytest.approx(data.contact_force_max.values, rel=1e-2)  # at the touch
+    for ax in fig.axes[1::2]:
+        gap, force = ax.lines[0].get_data()
+        assert np.min(gap[np.isfinite(force)]) == pytest.approx(1, abs=1e-3)  # where the stop is
 
 
 @pytest.mark.parametrize("periodic", [False, True])

@@ -88,7 +88,7 @@ def orbit_message(found: Settled) -> tuple[dict[str, np.ndarray], dict[str, Any]
     pressed = np.maximum(touch[drawn], 0.0), np.minimum(release[drawn], periods * T)
     times = np.unique(np.concatenate([np.linspace(0, periods * T, periods * SAMPLES + 1), shown["t"], *pressed]))
     states = orbit.sample(np.minimum(begin + times, orbit.section_times[-1]))
-    rests = np.count_nonzero(orbit.sticking["t_off"] >= begin)
+    rests = int(np.count_nonzero(orbit.sticking["t_off"] >= begin))
     words |= {"periods": periods, "impacts": len(impacts), "rests": rests}
     words |= {"itinerary": _itinerary(impacts, T, found.period), "orbit_status": str(orbit.status)}
     arrays |= {"t": times.astype("f4"), "states": states.astype("f4").ravel()}

@@ -29,7 +29,7 @@ def contact_force(result: Result):
     name = displacements(result)[0]
     unit = result.unit("contact_force_max")
     for (over_time, loop), point in zip(grid, points, strict=True):
-        way = path(result, point).joined()
+        way = pressed.finer(result, point, path(result, point).joined())
         for side, stop in result.stops(point.place).items():
             if result.compliance(side, point.place) is None:
                 continue
