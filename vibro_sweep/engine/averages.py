@@ -10,18 +10,17 @@ COARSEST, FINEST = 5, 20  # parts of the record; the longer ones show correlatio
 
 
 @jit
-def keep_averages(section, T, repeat, o, result):
+def keep_averages(section, T, repeat, right, left, o, result):
     """Keep the averages of an orbit that has settled, and their errors.
 
-    (2 N + 3,): x1, v1, ... of the section points, impacts in a forcing period on the right and on the left, lambda_1.
-    Of a periodic orbit over one period, the one that o has just counted impacts in; the error is how far it can be from
-    where it converges to, if its points change by no more than the part `repeat` in a period. Else over the record,
-    with the standard error.
+    (2 N + 3,): x1, v1, ... of the section points, impacts and contacts in a forcing period on the right and on the
+    left, lambda_1. Of a periodic orbit over one period; the error is how far it can be from where it converges to, if
+    its points change by no more than the part `repeat` in a period. Else over the record, with the standard error.
+
+    right, left : impacts and contacts in this time
     """
     mean, error, period = result.average, result.average_error, result.period
     length = period if period > 0 else len(section)
-    right = o.impacts_right if period > 0 else result.impacts_right
-    left = o.impacts_left if period > 0 else result.impacts_left
     largest, memory = 0.0, 1.0
     states = section.shape[1]
     for i in range(states):

@@ -102,6 +102,19 @@ def keep_contacts(law, o, result, time, width):
         result.restitution_mean = contact.restitutions / contact.ended if contact.ended > 0 else np.nan
 
 
+@inline
+def touches_of(law, o, result):
+    """Impacts and contacts on the right and on the left: of a periodic orbit in the period in which they were counted
+    last, else in the record."""
+    right = o.impacts_right if result.period > 0 else result.impacts_right
+    left = o.impacts_left if result.period > 0 else result.impacts_left
+    if law is not None:
+        contacts = law.orbits[o.lane].contacts
+        right += contacts[1] if result.period > 0 else result.contacts_right
+        left += contacts[0] if result.period > 0 else result.contacts_left
+    return right, left
+
+
 @noinline
 def keep_record(e, w, plan, point, result, section, phase, running, o):
     """Keep the results of the record of an orbit."""
@@ -176,7 +189,8 @@ def close(e, w, plan, points, results):
             )
             result.period = max(result.period, 0)
             if settled and plan.attractors:
-                keep_averages(states, period_of(e, o), REPEAT, o, result)
+                right, left = touches_of(e.law, o, result)
+                keep_averages(states, period_of(e, o), REPEAT, right, left, o, result)
             elif not settled and plan.record >= LEAST_RECORD:
                 result.status = status.NOT_SETTLED
 

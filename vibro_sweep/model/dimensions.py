@@ -33,7 +33,7 @@ def dimensions(masses: int) -> dict[str, Dimension]:
         "exponent": Dimension("exponent", "Lyapunov exponent, counted from the largest", 2 * masses),
         "multiplier": Dimension("multiplier", "Floquet multiplier, counted from that of largest modulus", 2 * masses),
         "averaged": Dimension(
-            "average of", "section points, impacts in a forcing period, lambda_1", len(averaged(masses))
+            "average of", "section points, impacts and contacts in a forcing period, lambda_1", len(averaged(masses))
         ),
         "elapsed": Dimension("forcing periods recorded", "forcing periods since the end of the transient"),
         "t_over_T": Dimension("time t/T", "forcing periods since the last section point"),

@@ -19,8 +19,11 @@ def impact_counts(ax, result, values, order):
     per = result.number("record") or 1
     # (values, starts)
     right, left = (result.array(f"impacts_{side}")[order] / per for side in ("right", "left"))
-    of_both = "\nboth stops" if len(result.starts) > 1 and len(result.sides) > 1 else ""
-    ax.set_ylabel(("impacts" if per == 1 else "impacts / $T$") + of_both)
+    sides = [side for side in result.sides if result.compliance(side, (0,) * len(result.sweep)) is None]
+    which = "both stops" if len(result.starts) > 1 and len(sides) > 1 else ""
+    if len(sides) == 1 < len(result.sides):  # the other one is compliant
+        which = f"{'right' if sides[0] > 0 else 'left'} stop"
+    ax.set_ylabel("\n".join(filter(None, ("impacts" if per == 1 else "impacts / $T$", which))))
     rests.tint(ax, result, values, order)
     if result.follow:
         shown = right + left
@@ -29,12 +32,12 @@ def impact_counts(ax, result, values, order):
         shown = right + left
         curve(ax, values, shown, color=INK)
     else:
-        shown = np.stack([{1: right, -1: left}[side] for side in result.sides])
-        wide = {"lw": 2.8, "alpha": 0.5} if len(result.sides) > 1 else {"lw": 0.8}
-        if 1 in result.sides:
+        shown = np.stack([{1: right, -1: left}[side] for side in sides or result.sides])
+        wide = {"lw": 2.8, "alpha": 0.5} if len(sides) > 1 else {"lw": 0.8}
+        if 1 in sides:
             curve(ax, values, right, color=RIGHT, label="right", **wide)
             margin_note(ax, 0.75, "right", RIGHT, fontsize=8)
-        if -1 in result.sides:
+        if -1 in sides:
             curve(ax, values, left, color=LEFT, label="left", lw=0.8)
             margin_note(ax, 0.25, "left", LEFT, fontsize=8)
     decades.scale_axis(ax, shown)

@@ -192,6 +192,13 @@ def end_beside(law, o):
 
 
 @inline
+def count_contacts_anew(law, i):
+    """Count the contacts of orbit i from here on."""
+    if law is not None:
+        law.orbits[i].contacts[0] = law.orbits[i].contacts[1] = 0
+
+
+@inline
 def keep_between(law, i, state, stops):
     """Put a state that is behind a rigid stop on it."""
     if law is not None:

@@ -31,7 +31,7 @@ from vibro_sweep.engine.motion.section import end_period, end_period_here
 from vibro_sweep.engine.motion.strike import clear_counts
 from vibro_sweep.engine.motion.together import flight_of, records_of, stops_of
 from vibro_sweep.engine.simd.jit import inline, jit, noinline
-from vibro_sweep.engine.simd.lanes import LANES, bits, lanes_of, lowest, number
+from vibro_sweep.engine.simd.lanes import LANES, lanes_of, lowest, number
 from vibro_sweep.engine.simd.memory import put, row
 from vibro_sweep.engine.tables.flight import load
 from vibro_sweep.engine.variational import tangent, tangent_flight
@@ -310,9 +310,9 @@ def carry(e, mapping, readings):
                 f = flight_of(e, o)
                 tangent_flight.aim(t, i, f.oscillator[0], f.nodes, o.cell, strikes.offset[i])
             tangent_flight.fly(t, lanes_of(struck))
-            hit = lanes_of(struck & ~passed)
-            if bits(hit) != 0:
-                tangent.saltate(t, hit, row(strikes.jump, 0) / row(strikes.speed, 0), row(strikes.R, 0))
+            hit = struck & ~passed  # as a number: where all stops are rigid the compiler knows that there are some
+            if hit != 0:
+                tangent.saltate(t, lanes_of(hit), row(strikes.jump, 0) / row(strikes.speed, 0), row(strikes.R, 0))
             carry_through(e.law, e, passed)
         waiting = finish_cells(e, waiting, free, struck, passed, readings)
     for i in range(LANES):

@@ -17,7 +17,7 @@ U Q_0^T.
 
 import math
 
-from vibro_sweep.engine.compliant.law import begin_beside, end_beside, is_at_rest, keep_between
+from vibro_sweep.engine.compliant.law import begin_beside, count_contacts_anew, end_beside, is_at_rest, keep_between
 from vibro_sweep.engine.compliant.section_vectors import begin_with_places, count_vectors, end_with_places
 from vibro_sweep.engine.motion.orbits import reset_counts, set_state
 from vibro_sweep.engine.motion.together import flight_of, stops_of
@@ -54,6 +54,7 @@ def begin_period(e, w, results, which):
             if which == BESIDE:
                 step_aside(e, o, w.beside[i, 0], w.state)
             reset_counts(o)
+            count_contacts_anew(e.law, i)
 
 
 @jit

@@ -1,0 +1,28 @@
+"""Attractors of oscillators with compliant stops: their contacts are among what tells them apart."""
+
+import numpy as np
+import pytest
+
+import vibro_sweep as vs
+from vibro_sweep.plotting.families import describe, kind
+
+BALL = vs.Oscillator.named(
+    "ball_in_cavity", mass_ratio=0.05, zeta=0.01, F=0.05, omega=1, tau=0, k_stop=4, c_stop=0.1, b=1
+)
+MIXED = vs.Oscillator.named("one_mass", zeta=0.05, F=0.8, omega=0.9, tau=0, k_stop=20, c_stop=3, R_left=0.7, b=1)
+
+
+@pytest.mark.parametrize("system, values", [(BALL, (0.6, 0.8, 3.0)), (MIXED, (0.2, 0.6, 0.8))], ids=["ball", "mixed"])
+def test_contacts_count_as_impacts(system, values):
+    data = vs.sweep(system, {"b": list(values)}, transient=600, record=100, observe=["section", "attractors"])
+    for k, b in enumerate(values):
+        last = data.isel(b=k)
+        orbit = vs.simulate(system.replace(b=b), np.zeros(2 * system.masses), 700)
+        late = 600 * system.period
+        sides = [*orbit.impacts["side"][orbit.impacts["t"] > late]]
+        sides += [*orbit.contacts["side"][orbit.contacts["t_touch"] > late]]
+        expected = [sides.count(1) / 100, sides.count(-1) / 100]
+        average, period = last.average.values, int(last.period)
+        assert average[-3:-1].tolist() == expected and period == 1
+        assert (str(kind(period, average)) == "free") == (sum(expected) == 0)
+        assert ("non-impacting" in describe(period, average)) == (sum(expected) == 0)
