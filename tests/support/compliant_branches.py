@@ -102,13 +102,17 @@ def study(seed: int) -> tuple[collections.Counter, list[str]]:
     return counted, [f"seed {seed}, {case}: {line}" for line in wrong]
 
 
-if __name__ == "__main__":
+def search(study, first: int, last: int) -> None:
+    """Print what is wrong of each seed, and what was counted by then."""
     total, seeds = collections.Counter(), 0
-    for seed in range(*map(int, sys.argv[1:3])):
+    for seed in range(first, last):
         counted, wrong = study(seed)
         total += counted
         seeds += bool(wrong)
         print(*wrong, sep="\n", end="\n" * bool(wrong), flush=True)
-        if seed % 10 == 9:
+        if seed % 10 == 9 or seed == last - 1:
             print(f"to seed {seed}: {dict(total)}, {seeds} seeds with a disagreement", flush=True)
-    print(f"{dict(total)}\n{seeds} seeds with a disagreement")
+
+
+if __name__ == "__main__":
+    search(study, *map(int, sys.argv[1:3]))

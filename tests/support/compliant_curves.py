@@ -9,7 +9,7 @@ import sys
 import numpy as np
 
 import vibro_sweep as vs
-from support.compliant_branches import drawn_case
+from support.compliant_branches import drawn_case, search
 from support.random_curves import TYPES, key, steps_of
 from support.same_branch import TooLongError, follow
 
@@ -58,15 +58,5 @@ def study(seed: int, most=2) -> tuple[collections.Counter, list[str]]:
     return counted, wrong
 
 
-def main(first: int, last: int) -> None:
-    total, seeds = collections.Counter(), 0
-    for seed in range(first, last):
-        counted, wrong = study(seed)
-        total += counted
-        seeds += bool(wrong)
-        print(*wrong, sep="\n", end="\n" * bool(wrong), flush=True)
-    print(f"{dict(total)}\n{seeds} seeds with a disagreement")
-
-
 if __name__ == "__main__":
-    main(*map(int, sys.argv[1:3]))
+    search(study, *map(int, sys.argv[1:3]))

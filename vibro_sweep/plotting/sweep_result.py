@@ -253,8 +253,7 @@ class Result:
     def title(self, what="") -> str:
         """The title: what is shown, the numbers that are the same at every point, and how much is there if not all."""
         numbers = self._numbers()
-        stops = self.settings.get("stops")
-        if stops in ("right", "left"):
+        if (stops := self.settings.get("stops")) in ("right", "left"):
             numbers.append(f"{stops} stop only")
         if self.settings.get("release") == "force":
             numbers.append("release by force")
