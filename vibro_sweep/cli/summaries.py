@@ -90,7 +90,7 @@ def cost_text(cost: "Estimate") -> str:
 def model_list() -> str:
     """The output of `models`: a line for each model, and for each law of contact that its stops may have."""
     models = [f"{name:<16} {one.title}" for name, one in MODELS.items()]
-    laws = [f"{name:<16} {one.title}: {', '.join(one.names('right'))}" for name, one in LAWS.items()]
+    laws = [f"{name:<16} {one.title}: {', '.join(one.names['right'])}" for name, one in LAWS.items()]
     return "\n".join([*models, "", "stops, of every model:", *laws])
 
 

@@ -22,6 +22,7 @@ from vibro_sweep.model.metric import ROUNDING
 from vibro_sweep.model.modes import modes
 from vibro_sweep.model.oscillator import System
 from vibro_sweep.model.parameters import NAMES, ParameterError
+from vibro_sweep.model.stops import has_compliant
 
 IMPACT = np.dtype([("t", float), ("side", np.int8), ("v1", float), ("x2", float), ("v2", float)])
 
@@ -100,7 +101,7 @@ def is_paper(system, axes: dict[str, np.ndarray] | None = None) -> bool:
     axes = axes or {}
     if not isinstance(system, System) or "mu_c" in axes or not (system.mu_c is None or system.mu_c == system.mu_k):
         return False
-    if system.family.built.compliant:
+    if has_compliant(system.numbers):
         return False
     if not np.all(axes.get("mu_k", system.mu_k)):
         return False

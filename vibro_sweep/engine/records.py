@@ -1,5 +1,6 @@
 """What kernels are given of each point of a sweep, and what they give back of each orbit."""
 
+import functools
 import math
 from typing import NamedTuple
 
@@ -103,13 +104,19 @@ def result_of(masses: int) -> np.dtype:
     )
 
 
-def new_results(shape: tuple[int, ...], masses: int = 2) -> np.ndarray:
-    """Results of points that are not computed yet."""
+@functools.cache  # each block has some
+def _new_result(masses: int) -> np.ndarray:
+    """The result (1,) of a point that is not computed yet."""
     result = np.zeros(1, result_of(masses))
     for one in OF_AN_ORBIT:
         result[one.name] = one.fill
     result["end"] = np.nan
-    return result.repeat(math.prod(shape)).reshape(shape)
+    return result
+
+
+def new_results(shape: tuple[int, ...], masses: int = 2) -> np.ndarray:
+    """Results of points that are not computed yet."""
+    return _new_result(masses).repeat(math.prod(shape)).reshape(shape)
 
 
 def starts_at(states: np.ndarray) -> np.ndarray:

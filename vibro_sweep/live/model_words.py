@@ -53,7 +53,7 @@ def _value(system: AnyOscillator, view: View, one: Parameter) -> Any:
     """What a number is; of one that is left out what it follows, or what a compliant stop has without it."""
     given = {**system.numbers, **view.numbers}
     for side in ("right", "left"):
-        if one.name in COMPLIANT.names(side) and (stop := stop_of(given, side)).law is COMPLIANT:
+        if one.name in COMPLIANT.names[side] and (stop := stop_of(given, side)).law is COMPLIANT:
             return stop.number(one.name.removesuffix("_left"), 0.0)
     return given[one.follows] if one.follows and given[one.name] is None else given[one.name]
 

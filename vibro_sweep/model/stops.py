@@ -43,25 +43,30 @@ def stop_of(given: Mapping[str, Any], side: str) -> Stop:
     law = own or law_given(given, "right")
     if law is None:
         return Stop(None, {})
-    pairs = zip(law.names("right"), law.names(side), strict=True)
+    pairs = zip(law.names["right"], law.names[side], strict=True)
     return Stop(law, {name: given.get(name) if given.get(one) is None else given[one] for name, one in pairs})
 
 
 def compliance_of(given: Mapping[str, Any], side: str) -> tuple[float, float, float] | None:
     """Stiffness, damping and preload of the stop on a side, right or left; None where it is rigid."""
     stop = stop_of(given, side)
-    return tuple(stop.number(name, 0.0) for name in COMPLIANT.names("right")) if stop.law is COMPLIANT else None
+    return tuple(stop.number(name, 0.0) for name in COMPLIANT.names["right"]) if stop.law is COMPLIANT else None
+
+
+def has_compliant(given: Mapping[str, Any]) -> bool:
+    """Whether numbers of a compliant stop are given."""
+    return any(law_given(given, side) is COMPLIANT for side in ("right", "left"))
 
 
 def law_given(given: Mapping[str, Any], side: str) -> ContactLaw | None:
     """The law that the numbers of this side alone say."""
-    return next((law for law in LAWS.values() if given.get(law.names(side)[0]) is not None), None)
+    return next((law for law in LAWS.values() if given.get(law.names[side][0]) is not None), None)
 
 
 def followers(given: Mapping[str, Any]) -> dict[str, Any]:
     """The numbers of a left stop that are left out and follow those of the right one."""
     law = stop_of(given, "left").law
-    pairs = zip(law.names("left"), law.names("right"), strict=True) if law else ()
+    pairs = zip(law.names["left"], law.names["right"], strict=True) if law else ()
     return {name: given[one] for name, one in pairs if given.get(name) is None and given.get(one) is not None}
 
 
@@ -69,15 +74,15 @@ def check_stops(given: Mapping[str, Any]) -> None:
     """Raise ParameterError unless the numbers and options of the stops fit together."""
     stops = given.get("stops", "both")
     for side in ("right", "left"):
-        keys = [law.names(side)[0] for law in LAWS.values() if given.get(law.names(side)[0]) is not None]
+        keys = [law.names[side][0] for law in LAWS.values() if given.get(law.names[side][0]) is not None]
         for key in keys[1:]:
             raise ParameterError(key, given[key], f"left out where {keys[0]} is given: a stop is {' or '.join(LAWS)}")
     right, left = law_given(given, "right"), stop_of(given, "left").law
     if (left if stops == "left" else right) is None:
-        keys = [f"{law.names('right')[0]}, of a {law.name} stop" for law in LAWS.values() if law is not RIGID]
+        keys = [f"{law.names['right'][0]}, of a {law.name} stop" for law in LAWS.values() if law is not RIGID]
         raise ParameterError("R", None, f"given; or {' or '.join(keys)}")
     for law in LAWS.values():
-        of_right, of_left = law.names("right"), law.names("left")
+        of_right, of_left = law.names["right"], law.names["left"]
         if law not in (right, left):
             _refuse(given, of_right[1:], f"it belongs to a stop with {of_right[0]}")
             for one in law.options:

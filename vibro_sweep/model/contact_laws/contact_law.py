@@ -1,5 +1,7 @@
 """What a law of contact declares of itself; keys of scenes and sweeps, messages, files and pictures follow from it."""
 
+from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 from vibro_sweep.model.parameter import Parameter
@@ -13,7 +15,8 @@ class Option(NamedTuple):
     words: tuple[str, ...]
 
 
-class ContactLaw(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class ContactLaw:
     """What a stop does to the mass that meets it."""
 
     name: str
@@ -28,6 +31,7 @@ class ContactLaw(NamedTuple):
     def numbers_of_both(self) -> tuple[Parameter, ...]:
         return (*self.numbers, *self.left)
 
-    def names(self, side: str) -> tuple[str, ...]:
-        """The names of the numbers of the stop on this side, right or left."""
-        return tuple(one.name for one in (self.numbers if side == "right" else self.left))
+    @cached_property
+    def names(self) -> dict[str, tuple[str, ...]]:
+        """The names of the numbers of the stop on each side, right and left."""
+        return {side: tuple(one.name for one in own) for side, own in (("right", self.numbers), ("left", self.left))}
