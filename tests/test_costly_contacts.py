@@ -14,21 +14,41 @@ SYSTEM = vs.Oscillator.named("one_mass", k=1, zeta=0.05, F=0.5, omega=0.8, b=1, 
 
 
 @pytest.mark.parametrize("damping", [1e9, 1e12])
-def test_a_contact_of_too_many_steps_says_so(damping):
-    system = SYSTEM.replace(c_stop=damping)
-    orbit = vs.simulate(system, (0, 2), 5)
+def test_a_strong_damper_costs_no_steps(damping):
+    """The mass creeps. Left by force the stop is a rigid one with R = 0; by displacement it holds the mass until what
+    pulls has done as much as what pushed."""
+    start, rigid = (0, 2), SYSTEM.replace(c_stop=None, k_stop=None, R=0)
+    by_force, other = SYSTEM.replace(c_stop=damping, release="force"), vs.simulate(rigid, start, 200)
+    orbit = vs.simulate(by_force, start, 200)
+    assert orbit.status == "ok" and np.abs(orbit.section - other.section).max() < 1e3 / damping + 1e-12
+    held = vs.simulate(by_force.replace(release="displacement"), start, 200)
+    assert held.status == "ok" and len(held.contacts) == 400
+    first = held.contacts[0]
+    t = np.linspace(first["t_touch"], first["t_release"], 10_001)
+    pull = 0.5 * np.sin(0.8 * t) - 1  # the spring: the mass is at the stop
+    assert first["v_touch"] + np.trapezoid(pull, t) == pytest.approx(first["v_release"], abs=1e-7)
+    assert abs(first["v_release"]) * damping == pytest.approx(-pull[-1], rel=1e-6)
+
+
+RINGING = SYSTEM.replace(b=-1, stops="right", c_stop=0)  # a stop without a damper, on which the mass lies
+
+
+def test_a_contact_of_too_many_steps_says_so():
+    system = RINGING.replace(k_stop=1e14)
+    orbit = vs.simulate(system, (-1, 0), 5)
     assert orbit.status == "rates_too_far_apart" and np.isnan(orbit.section[-1]).all()
-    assert np.isnan(vs.lyapunov(system, (0, 2), 2, 3)).all()
-    data = vs.sweep(SYSTEM, {"c_stop": [1.0, damping]}, start=(0, 2), transient=2, record=2, workers=1)
+    assert np.isnan(vs.lyapunov(system, (-1, 0), 2, 3)).all()
+    data = vs.sweep(RINGING, {"k_stop": [100.0, 1e14]}, start=(-1, 0), transient=2, record=2, workers=1)
     assert data["status"].values.tolist() == [0, 3] and np.isnan(data["x1"].values[1]).all()
 
 
 def test_ctrl_c_ends_a_long_contact():
+    system = RINGING.replace(k_stop=1e9)
     timer = threading.Timer(0.5, lambda: os.kill(os.getpid(), signal.SIGINT))
-    vs.simulate(SYSTEM, (0, 2), 1)  # compiled
+    vs.simulate(system, (-1, 0), 1)  # compiled
     timer.start()
     with pytest.raises(KeyboardInterrupt):
-        vs.simulate(SYSTEM.replace(c_stop=5e5), (0, 2), 10_000)
+        vs.simulate(system, (-1, 0), 10_000)
     threads = threading.active_count()
     time.sleep(0.5)
     assert threading.active_count() <= threads - 1  # the kernel has ended, too

@@ -6,6 +6,7 @@ The force, and derivatives, are of the same form (damped_wave.py); passage.py sa
 first one for certain.
 """
 
+from vibro_sweep.engine.compliant.closed_tables import FEWER, SLOW, SLOW_ROWS
 from vibro_sweep.engine.compliant.damped_wave import force_of, peak, seek, wave_at
 from vibro_sweep.engine.compliant.passage_series import (
     INVERSE,
@@ -17,7 +18,6 @@ from vibro_sweep.engine.compliant.passage_series import (
     of_stop,
 )
 from vibro_sweep.engine.compliant.passage_tables import NEARLY
-from vibro_sweep.engine.compliant.slow_manifold import FEWER, SLOW, SLOW_ROWS
 from vibro_sweep.engine.simd.columns import rows_of, weigh
 from vibro_sweep.engine.simd.jit import inline, jit, noinline
 from vibro_sweep.engine.simd.lanes import bits, select

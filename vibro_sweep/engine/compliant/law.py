@@ -16,6 +16,9 @@ import numpy as np
 from vibro_sweep.engine.compliant.distance import NEAR
 from vibro_sweep.engine.compliant.passage_tables import passages_of, set_passage
 from vibro_sweep.engine.compliant.relaxing import bring_stops
+from vibro_sweep.engine.compliant.slow_contact import slow_contact_fields
+from vibro_sweep.engine.compliant.slow_manifold import slow_manifold_fields
+from vibro_sweep.engine.compliant.vectors_set_apart import vectors_fields
 from vibro_sweep.engine.records import Kind
 from vibro_sweep.engine.simd.jit import inline, jit
 from vibro_sweep.engine.simd.lanes import LANES
@@ -83,6 +86,10 @@ def law_of(masses: int) -> np.dtype:
         ("touch", float, (states, states)),  # R, and
         ("vectors", float, (states, states)),  # Q of the touch of a stop that relaxes
         ("volume", float),  # ln|det| of the jumps of the orbit while another is followed beside it
+        # of the contact where it lasts
+        *slow_manifold_fields(masses),
+        *slow_contact_fields(masses),
+        *vectors_fields(masses),
         # of what is recorded
         ("watched", np.bool_),  # whether the peaks are wanted
         ("largest", float),  # delta so far in this contact
@@ -121,7 +128,7 @@ def set_law(law, i, point, q):
         contact.preload[n] = point.contact_preload[n]
         step = min(width, WIDTH / point.contact_rate[n]) if contact.compliant[n] else width
         contact.step[n] = np.float32(step)
-        contact.relaxed[n] = 0.0
+        contact.relaxed[n], contact.apart[2 * n], contact.apart[2 * n + 1] = 0.0, 0, 0
         contact.near[n] = NEAR * (abs(point.stops[n]) + q.largest) if contact.compliant[n] else 0.0
         fill_equations(contact.equations[n], point, 2.0 * n - 1.0, n)
     contact.pressed, contact.entered, contact.watched, contact.row = 0.0, False, False, -1

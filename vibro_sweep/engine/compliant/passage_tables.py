@@ -19,7 +19,7 @@ import math
 
 import numpy as np
 
-from vibro_sweep.engine.compliant.slow_manifold import SLOW, closed_fields, set_apart
+from vibro_sweep.engine.compliant.closed_tables import SLOW, closed_fields, set_closed_form
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.simd.memory import record
@@ -121,7 +121,7 @@ def set_passage(passage, i, contact, point, q):
         for m in range(1, masses):
             passage.trace[n, i] += contact.equations[n, m, 2 * m + 1]
         set_duration(passage, n, i, -contact.equations[n, 0, 0], -0.5 * contact.equations[n, 0, 1])
-        set_apart(passage, n, i, contact.equations[n], passage.damping[n, i], q.omega)
+        set_closed_form(passage, n, i, contact, q.omega)
 
 
 @jit

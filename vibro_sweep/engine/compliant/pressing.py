@@ -18,7 +18,10 @@ from vibro_sweep.engine.compliant.contact_series import (
 )
 from vibro_sweep.engine.compliant.force_phase import turn_phase
 from vibro_sweep.engine.compliant.law import lane_of
+from vibro_sweep.engine.compliant.relaxing import bring_stops
+from vibro_sweep.engine.compliant.slow_contact import fast_that_died, load_slow, slow_step
 from vibro_sweep.engine.compliant.tangent_in_contact import CONTINUED, RELAXED, UNRELAXED, carry_over_contact
+from vibro_sweep.engine.compliant.vectors_set_apart import fly_vectors_apart, set_vectors_apart
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.tables.flight import evaluate
 from vibro_sweep.engine.variational import tangent_flight
@@ -27,6 +30,7 @@ from vibro_sweep.engine.variational import tangent_flight
 MOST_SHRUNK = 2.0
 MOST_STEPS = 2**20  # in a cell: a tenth of a second
 BETWEEN_LOOKS = 2**14  # steps, at `halt`
+BETWEEN_TRIES = 8  # to follow the slow motion alone
 TOO_MANY = -1.0  # in place of a time
 
 
@@ -39,6 +43,7 @@ def begin_contact(law, f, stops, o, t, k, s, side, on_stop):
         contact.y[0] = 0.0
     o.resting = contact.pressed = side
     contact.entered, contact.least, contact.touched = on_stop, 1, contact.y[1]
+    contact.fast = 0
     contact.begun = UNRELAXED if contact.relaxed[n] > 0.0 else RELAXED if on_stop else CONTINUED
     if contact.relaxed[n] > 0.0:
         rest = contact.preload[n] / contact.stiffness[n]
@@ -72,10 +77,18 @@ def stay_in_contact(law, f, stops, o, records, t, k, s):
         steps += 1
         if steps > MOST_STEPS or (steps % BETWEEN_LOOKS == 0 and law.halt[0] != 0):
             return TOO_MANY
-        load_contact(contact, side, q.omega)
-        left = q.width - s - w
-        last = left <= 1.001 * contact.step[n]
-        left = left if last else contact.step[n]
+        left, step = q.width - s - w, contact.step[n]
+        if (contact.fast > 0 or steps % BETWEEN_TRIES == 0) and left > BETWEEN_TRIES * step:
+            carried = try_slow_motion(contact, o, t, q, k, s, w, carried)
+        else:
+            contact.fast = 0
+        if contact.fast > 0:
+            step = slow_step(contact, n, contact.fast)
+            load_slow(contact, n, contact.fast)
+        else:
+            load_contact(contact, side, q.omega)
+        last = left <= 1.001 * step
+        left = left if last else step
         d = end_of_contact(contact, side, left)
         if d != d:
             return d
@@ -85,12 +98,15 @@ def stay_in_contact(law, f, stops, o, records, t, k, s):
         if contact.watched:
             watch_contact(contact, side, end)
             contact.work += contact.damping[n] * integral_of_square(contact.c[0], end)
-        if t.wanted:
+        if t.wanted and contact.fast == 0:
             carry_matrix(contact, side, end)
         go_on_in_contact(contact, end)
         turn_phase(contact, q.omega, end)
         contact.entered = False
         w += end
+        if t.wanted and contact.fast > 0:
+            fly_vectors_apart(t, o.lane, contact, side, n, contact.fast, end)
+            carried = w
         if last or d < np.inf:
             break
         if t.wanted and contact.damping[n] * (w - carried) > MOST_SHRUNK:
@@ -110,6 +126,24 @@ def stay_in_contact(law, f, stops, o, records, t, k, s):
     contact.begun = CONTINUED
     keep_in_log(law, contact, o, k, s + w, ended)
     return w if ended else d
+
+
+@jit
+def try_slow_motion(contact, o, t, q, k, s, w, carried):
+    """Follow the slow motion alone from here on, if the fast one has died away. Returns how far vectors are carried."""
+    side, i = contact.pressed, o.lane
+    n = lane_of(side)
+    contact.fast = fast_that_died(contact, n, q.omega)
+    if contact.fast == 0 or not t.wanted:
+        return carried
+    if w > carried:
+        o.log_volume += carry_over_contact(t, i, contact, side, w - carried, False)
+        contact.begun = CONTINUED
+        begin_matrix(contact)
+    bring_stops(contact, o, k, s + w, q.width)
+    if contact.relaxed[1 - n] > 0.0 or not set_vectors_apart(t, i, contact, side, n, contact.fast):
+        contact.fast = 0
+    return w
 
 
 @jit

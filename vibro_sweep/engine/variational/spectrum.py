@@ -16,6 +16,7 @@ from vibro_sweep.engine.variational.orthonormal import CONDITION
 from vibro_sweep.model import exponents, status
 
 BATCHES = 20  # parts of the recorded time whose scatter gives the error of an exponent
+OF_LOGARITHMS = 2.0**-50  # rounding of their sum
 MOST_FORGOTTEN = 700.0  # as a logarithm, that fits a float
 MOST_CORRELATION = 0.8  # of neighbouring parts, that is allowed for
 
@@ -187,14 +188,16 @@ def close_spectrum(e, o, w, plan, point, result):
 
 @inline
 def widen_forgotten(law, t, i, result, time):
-    """Add what stops that are at rest to rounding might do where contacts shrink vectors by more than that."""
+    """Add what stops that are at rest to rounding might do where contacts shrink vectors by more than that, and
+    rounding of the logarithms themselves."""
     if law is not None:
         spectrum, error = result.lyapunov, result.lyapunov_error
         for j in range(len(spectrum)):
-            if t.forgotten[j, i] > 0.0 and spectrum[j] > -np.inf:
-                error[j] += t.forgotten[j, i] / time
+            if spectrum[j] > -np.inf:
+                more = t.forgotten[j, i] + OF_LOGARITHMS * abs(spectrum[j]) * time
+                error[j] += more / time
                 if result.period > 0:
-                    most = math.expm1(min(t.forgotten[j, i], MOST_FORGOTTEN))
+                    most = math.expm1(min(more, MOST_FORGOTTEN))
                     result.multiplier_error[j] += most * math.hypot(result.multiplier_re[j], result.multiplier_im[j])
 
 

@@ -1,0 +1,94 @@
+"""Contacts that last: a series of the slow motion takes the place of thousands of the fast one.
+
+The exponents of a mass that never leaves the stop are those of a linear oscillator; contacts that end are compared with
+those in many digits.
+"""
+
+import numpy as np
+import pytest
+from mpmath import mp, mpf
+from support import compliant_exponents, slow_cases
+from support.compliant_contacts import LEAST, judged
+
+import vibro_sweep as vs
+
+LAWS = [(1e8, 0.5), (1e8, 1.5), (1e6, 0.05), (1e6, 20), (1e4, 10), (50, 20), (5, 50)]  # k_stop, damping ratio
+
+
+def chain(masses, k, z, release, **numbers):
+    """A chain, whose first mass a constant force presses on its stop."""
+    K = 2 * np.eye(masses) - np.eye(masses, k=1) - np.eye(masses, k=-1)
+    first = np.eye(masses)[0]
+    given = dict(force=0.1 * np.arange(1, masses + 1), omega=0.9, b=0.1, tau=0.3, stops="right", constant=5 * first)
+    damping = 2 * z * k**0.5
+    law = dict(k_stop=k, c_stop=damping, release=release, contact_normal=first)
+    return vs.Oscillator(np.diag(np.arange(1.0, masses + 1)), K, 0.05 * K, **(given | law | numbers))
+
+
+def exponents(system):
+    """Real parts of the eigenvalues of motion in contact, in forty digits, the largest one first."""
+    q, N = system.linear, system.masses
+    with mp.workdps(40):
+        M, K, C = (mp.matrix([[mpf(float(x)) for x in row] for row in one]) for one in (q.M, q.K, q.C))
+        for i in range(N):
+            for j in range(N):
+                K[i, j] += mpf(float(q.k_high)) * mpf(float(q.normal[i])) * mpf(float(q.normal[j]))
+                C[i, j] += mpf(float(q.c_high)) * mpf(float(q.normal[i])) * mpf(float(q.normal[j]))
+        inverse, A = M**-1, mp.zeros(2 * N, 2 * N)
+        A[:N, N:], A[N:, :N], A[N:, N:] = mp.eye(N), -inverse * K, -inverse * C
+        return np.array(sorted((float(mp.re(one)) for one in mp.eig(A)[0]), reverse=True))
+
+
+@pytest.mark.parametrize("masses", [*slow_cases(2, 3, 4), 1])
+@pytest.mark.parametrize("release", ["displacement", "force"])
+@pytest.mark.parametrize("k, z", LAWS)
+def test_exponents_of_a_mass_that_stays_on_its_stop(masses, k, z, release):
+    system = chain(masses, k, z, release)
+    data = vs.sweep(
+        system, {"omega": [0.9]}, start=[0.0] * (2 * masses), transient=700, record=20, workers=1,
+        observe=["section", "lyapunov", "contacts"],
+    ).isel(omega=0)  # fmt: skip
+    assert data.status == 0 and data.period == 1 and data.contact_time == pytest.approx(1, abs=1e-12)
+    exact = exponents(system)
+    error = np.abs(data.lyapunov.values - exact)
+    assert np.all(error <= 3e-13 * np.maximum(1e-2, np.abs(exact)))
+    assert np.all(error <= 3 * data.lyapunov_error.values)
+
+
+@pytest.mark.parametrize("masses", [*slow_cases(2, 3), 1])
+@pytest.mark.parametrize("k, z", [(400, 0.3), (400, 1.5), (16, 5)])
+@pytest.mark.parametrize("release", ["displacement", "force"])
+def test_exponents_of_long_contacts_that_end(masses, k, z, release):
+    """A force presses the mass on its stop, and tears it off each period."""
+    force = 6 * np.eye(masses)[0]
+    system = chain(masses, k, z, release, force=force, constant=2 * np.eye(masses)[0])
+    report = compliant_exponents.compared_at([0.1], system)
+    assert report.period and report.share > 0.3
+    assert np.all(report.errors <= 3 * report.stated) and report.stated.max() < 1e-11
+
+
+@pytest.mark.parametrize(
+    "masses, k, z", [(1, 1e4, 0.5), *slow_cases((1, 1e6, 0.2), (2, 1e4, 1.5), (3, 1e4, 0.3), (2, 100, 30))]
+)
+@pytest.mark.parametrize("release", ["displacement", "force"])
+def test_long_contacts_in_many_digits(masses, k, z, release):
+    system = chain(masses, k, z, release, force=6 * np.eye(masses)[0], constant=2 * np.eye(masses)[0])
+    start = np.zeros(2 * masses)
+    orbit = vs.simulate(system, start, 3)
+    found = orbit.contacts[~np.isnan(orbit.contacts["t_release"])]
+    assert (found["t_release"] - found["t_touch"]).max() > 1
+    report = judged(system, start, found, 3 * system.period)
+    assert not report.get("defect") and report["compared"] == len(found) and max(report["errors"].values()) <= LEAST
+
+
+def test_samples_of_long_contacts():
+    """Samples do not ask whether the fast motion is followed; they join the states at the sections."""
+    system = chain(1, 1e6, 1.0, "force", force=[6], constant=[2])
+    orbit = vs.simulate(system, (0, 0), 4)
+    at_sections = orbit.sample(np.arange(5) * system.period)
+    assert np.allclose(at_sections, orbit.section, rtol=0, atol=1e-14)
+    times = np.linspace(0, 4 * system.period, 4001)
+    x, v = orbit.sample(times).T
+    slope = (x[2:] - x[:-2]) / (times[2] - times[0])
+    smooth = np.abs(np.diff(v, 2)) < 1e-3  # no touch in between
+    assert smooth.mean() > 0.9 and np.abs(slope - v[1:-1])[smooth].max() < 1e-3
