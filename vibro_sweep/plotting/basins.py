@@ -5,7 +5,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.patches import Patch
 
 from vibro_sweep.model.state import MOST_MASSES, START, state
-from vibro_sweep.plotting.families import KINDS, describe, kind
+from vibro_sweep.plotting.families import KINDS, describe, kind, named
 from vibro_sweep.plotting.labels import legend_below
 from vibro_sweep.plotting.style import INK, NOT_COMPUTED, edges, equation, marked
 from vibro_sweep.plotting.sweep_result import Point, Result
@@ -82,16 +82,16 @@ def _attractors(result):
     others = numbers[np.argsort(-counts, kind="stable")][NAMED:]
     label[np.isin(label, others)] = OTHERS
     numbers, counts = np.unique(label[label >= 0], return_counts=True)
-    named, seen = {}, {}
+    labels, seen = {}, {}
     for number in sorted(numbers, key=lambda one: (one == 0, one == OTHERS, -counts[numbers == one])):
         members = label == number
         least, of_it = period[members].min(), average[members].mean(axis=0)
-        which, text = str(kind(least, of_it)), describe(least, of_it)
+        which, text = str(kind(least, of_it)), describe(least, of_it, result.meeting)
         if number in (0, OTHERS):
             which, text = "unsettled", "others" if number else KINDS["unsettled"][0]
         seen[which] = seen.get(which, -1) + 1
-        named[number] = (_shade(KINDS[which][1], seen[which]), f"{text} ({100 * members.mean():.3g} %)")
-    return label, named
+        labels[number] = (_shade(KINDS[which][1], seen[which]), f"{text} ({100 * members.mean():.3g} %)")
+    return label, labels
 
 
 def _kinds(result):
@@ -104,7 +104,10 @@ def _kinds(result):
     label[np.isnan(rank)] = np.nan
     there = {number: np.mean(label == number) for number in np.unique(label[label >= 0])}
     return label, {
-        number: (to_rgb(KINDS[names[int(number)]][1]), f"{KINDS[names[int(number)]][0]} ({100 * share:.3g} %)")
+        number: (
+            to_rgb(KINDS[names[int(number)]][1]),
+            f"{named(names[int(number)], result.meeting)} ({100 * share:.3g} %)",
+        )
         for number, share in there.items()
     }
 

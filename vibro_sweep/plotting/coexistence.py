@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.collections import LineCollection, PolyCollection
 
 from vibro_sweep.model.catalogue import BY_NAME
-from vibro_sweep.plotting.families import KINDS, MARKERS, kind
+from vibro_sweep.plotting.families import KINDS, MARKERS, kind, named
 from vibro_sweep.plotting.labels import arrange, legend_below, overlap
 from vibro_sweep.plotting.style import at_section, edges, marked, type_size
 from vibro_sweep.plotting.sweep_result import Point, Result
@@ -45,9 +45,10 @@ def coexistence(result: Result):
         mark_grazing(axes, result, values[0], values[-1])
     below.set(xlim=edges(values)[[0, -1]], ylim=(0, 1), xlabel=result.axis(key), ylabel=BY_NAME["share"].label)
     there = {one.kind for one in found}
-    named = {name: marked(colour, MARKERS.get(which, "")) for which, (name, colour) in KINDS.items() if which in there}
-    named |= {line.get_label(): line for line in above.lines if line.get_gid() == "grazing"}
-    legend_below(fig, list(named.values()), 3, labels=list(named))
+    shown = [(which, colour) for which, (_, colour) in KINDS.items() if which in there]
+    marks = {named(which, result.meeting): marked(colour, MARKERS.get(which, "")) for which, colour in shown}
+    marks |= {line.get_label(): line for line in above.lines if line.get_gid() == "grazing"}
+    legend_below(fig, list(marks.values()), 3, labels=list(marks))
     fig.align_ylabels(axes)
     _name_windows(below, values, found)
     return fig

@@ -3,7 +3,6 @@
 import numpy as np
 
 from vibro_sweep.model.state import MOST_MASSES
-from vibro_sweep.plotting.impact_panel import NONE
 from vibro_sweep.plotting.labels import ABOVE
 from vibro_sweep.plotting.spectrum_panel import curve
 from vibro_sweep.plotting.style import ARROWS, BRANCHES, FAINT, INK, LEFT, RIGHT, symbol
@@ -30,7 +29,7 @@ def energy(result: Result):
     order = np.argsort(values)  # a sweep may run downwards; an axis does not
     power = result.array("impact_power")[order]
     struck = bool(np.any(power > 0)) or result.failed
-    fig = result.page(4.6 if struck else 3.0, result.title("Energy" if struck else f"Energy; {NONE}"))
+    fig = result.page(4.6 if struck else 3.0, result.title("Energy" if struck else f"Energy; no {result.meeting}s"))
     axes = fig.subplots(1 + struck, sharex=True, squeeze=False)[:, 0]
     if struck:
         _power(axes[0], values[order], power, result)

@@ -17,6 +17,11 @@ KINDS = {
     "aperiodic": ("chaotic or quasi-periodic", INK),
     "unsettled": ("not settled", NOT_COMPUTED),
 }
+OF_CONTACTS = {  # the names where all stops are compliant
+    "free": "without contact",
+    "right": "periodic, more contacts on the right",
+    "left": "periodic, more contacts on the left",
+}
 MARKERS = {"free": "o", "right": ">", "left": "<", "even": "D", "aperiodic": "."}
 
 
@@ -33,14 +38,19 @@ def kind(period, average) -> np.ndarray:
     return np.select([where for where, _ in known], [name for _, name in known], "left")
 
 
-def describe(period, average) -> str:
-    """An attractor in words: its period and its impacts."""
+def named(which: str, meeting: str) -> str:
+    """The name of a kind in a legend. meeting: what masses have at the stops, impact or contact."""
+    return (OF_CONTACTS if meeting == "contact" else {}).get(which, KINDS[which][0])
+
+
+def describe(period, average, meeting: str = "impact") -> str:
+    """An attractor in words: its period and its impacts or, at compliant stops, contacts."""
     name, (right, left) = str(kind(period, average)), average[RATES]
     if name == "unsettled":
         return KINDS[name][0]
     if name == "aperiodic":
-        return f"{KINDS[name][0]}, {right:.3g} + {left:.3g} impacts / $T$"
+        return f"{KINDS[name][0]}, {right:.3g} + {left:.3g} {meeting}s / $T$"
     right, left = (round(float(rate) * int(period)) for rate in (right, left))
     if name == "free":
-        return f"{KINDS[name][0]}, period {int(period)}"
-    return f"period {int(period)}, {right} {'impact' if right == 1 else 'impacts'} right, {left} left"
+        return f"{named(name, meeting)}, period {int(period)}"
+    return f"period {int(period)}, {right} {meeting if right == 1 else f'{meeting}s'} right, {left} left"

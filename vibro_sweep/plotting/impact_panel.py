@@ -19,7 +19,7 @@ def impact_counts(ax, result, values, order):
     per = result.number("record") or 1
     # (values, starts)
     right, left = (result.array(f"impacts_{side}")[order] / per for side in ("right", "left"))
-    sides = [side for side in result.sides if result.compliance(side, (0,) * len(result.sweep)) is None]
+    sides = result.rigid
     which = "both stops" if len(result.starts) > 1 and len(sides) > 1 else ""
     if len(sides) == 1 < len(result.sides):  # the other one is compliant
         which = f"{'right' if sides[0] > 0 else 'left'} stop"

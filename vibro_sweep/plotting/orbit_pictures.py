@@ -81,6 +81,8 @@ def phase_portrait(result: Result):
         way = path(result, point)
         first = x_name == displacements(result)[0]
         way = way if first or result.contact_normal is not None else way.joined()
+        if first and len(result.rigid) < len(result.sides) and not len(way.jumps):
+            way = pressed.finer(result, point, way.joined())
         _line(ax, way[x_name], way[v_name], way)
         rests.along(ax, way, x_name, v_name)
         pressed.mark(ax, result, point, way, x_name, v_name)

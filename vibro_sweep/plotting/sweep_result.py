@@ -175,6 +175,16 @@ class Result:
         return compliance_of({name: self.number(name, place) for name in NUMBERS}, _SIDES[side])
 
     @property
+    def rigid(self) -> tuple[int, ...]:
+        """The sides of rigid stops."""
+        return tuple(side for side in self.sides if self.compliance(side, (0,) * len(self.sweep)) is None)
+
+    @property
+    def meeting(self) -> str:
+        """What masses have at the stops, where it is one word for all of them."""
+        return "impact" if self.rigid else "contact"
+
+    @property
     def sides(self) -> tuple[int, ...]:
         """The stops that there are."""
         return {"right": (1,), "left": (-1,)}.get(self.settings.get("stops"), (1, -1))

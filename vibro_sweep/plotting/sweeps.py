@@ -63,7 +63,7 @@ def bifurcation(result: Result):
     if shows_impacts(result):
         if there_are(result, in_range(result)):
             panels.append((0.9, impact_counts))
-        elif not result.failed:
+        elif not result.failed and result.rigid:
             note = f"; {NONE}"
     return _stack(result, panels if result.ax is None else panels[:1], f"Bifurcation diagram{note}")
 

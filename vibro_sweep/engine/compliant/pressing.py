@@ -121,7 +121,8 @@ def stay_in_contact(law, f, stops, o, records, t, k, s):
     o.log_volume -= contact.damping[n] * w
     o.pressed_time += w
     if t.wanted:
-        o.log_volume += carry_over_contact(t, o.lane, contact, side, w - carried, ended)
+        if ended or w > carried:
+            o.log_volume += carry_over_contact(t, o.lane, contact, side, w - carried, ended)
         t.cell[o.lane], t.offset[o.lane] = k, s + w
     contact.begun = CONTINUED
     keep_in_log(law, contact, o, k, s + w, ended)
