@@ -16,7 +16,6 @@ import numpy as np
 from vibro_sweep.engine.compliant.distance import NEAR
 from vibro_sweep.engine.compliant.passage_tables import passages_of, set_passage
 from vibro_sweep.engine.compliant.relaxing import bring_stops
-from vibro_sweep.engine.compliant.slow_contact import slow_contact_fields
 from vibro_sweep.engine.compliant.slow_manifold import slow_manifold_fields
 from vibro_sweep.engine.compliant.vectors_set_apart import vectors_fields
 from vibro_sweep.engine.records import Kind
@@ -88,7 +87,6 @@ def law_of(masses: int) -> np.dtype:
         ("volume", float),  # ln|det| of the jumps of the orbit while another is followed beside it
         # of the contact where it lasts
         *slow_manifold_fields(masses),
-        *slow_contact_fields(masses),
         *vectors_fields(masses),
         # of what is recorded
         ("watched", np.bool_),  # whether the peaks are wanted

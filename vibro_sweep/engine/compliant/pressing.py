@@ -30,6 +30,7 @@ from vibro_sweep.engine.variational import tangent_flight
 MOST_SHRUNK = 2.0
 MOST_STEPS = 2**20  # in a cell: a tenth of a second
 BETWEEN_LOOKS = 2**14  # steps, at `halt`
+NEARBY = 2.0**-16  # of the time to the end of a contact
 BETWEEN_TRIES = 8  # to follow the slow motion alone
 TOO_MANY = -1.0  # in place of a time
 
@@ -69,7 +70,7 @@ def begin_contact(law, f, stops, o, t, k, s, side, on_stop):
 def stay_in_contact(law, f, stops, o, records, t, k, s):
     """Contact from offset s of cell k on. Returns the time to its end, infinite if not in this cell, or `TOO_MANY`."""
     q, contact, side, w = f.oscillator[0], law.orbits[o.lane], law.orbits[o.lane].pressed, 0.0
-    n, carried, steps = lane_of(side), 0.0, 0  # carried: so far tangent vectors are
+    n, carried, steps, ending = lane_of(side), 0.0, 0, False  # carried: so far tangent vectors are
     contact.work -= stored_energy(contact, n)
     if t.wanted:
         begin_matrix(contact)
@@ -78,10 +79,8 @@ def stay_in_contact(law, f, stops, o, records, t, k, s):
         if steps > MOST_STEPS or (steps % BETWEEN_LOOKS == 0 and law.halt[0] != 0):
             return TOO_MANY
         left, step = q.width - s - w, contact.step[n]
-        if (contact.fast > 0 or steps % BETWEEN_TRIES == 0) and left > BETWEEN_TRIES * step:
+        if contact.fast > 0 or (steps % BETWEEN_TRIES == 0 and left > BETWEEN_TRIES * step):
             carried = try_slow_motion(contact, o, t, q, k, s, w, carried)
-        else:
-            contact.fast = 0
         if contact.fast > 0:
             step = slow_step(contact, n, contact.fast)
             load_slow(contact, n, contact.fast)
@@ -92,6 +91,10 @@ def stay_in_contact(law, f, stops, o, records, t, k, s):
         d = end_of_contact(contact, side, left)
         if d != d:
             return d
+        if contact.fast > 0 and d < np.inf and not ending:  # all digits of a are those of a series that begins nearby
+            left, d, last, ending = d * (1.0 - NEARBY), np.inf, False, True
+        else:
+            ending = False
         end = min(d, left)
         sample_contact(contact, stops, o, records, k, side, s + w, s + w + end)
         contact.time += end

@@ -6,26 +6,15 @@ however stiff the stop, and where the contact ends is found in it as in others.
 
 import math
 
-import numpy as np
-
+from vibro_sweep.engine.compliant.contact_series import drive_of
 from vibro_sweep.engine.compliant.slow_manifold import is_set_apart, part_of
 from vibro_sweep.engine.simd.jit import inline, jit
 from vibro_sweep.engine.tables.flight import ORDER, WIDTH
 from vibro_sweep.engine.tables.twofold import add, multiply
 
 WORTHWHILE = 4.0  # times as long as other series in contact
-DIED = 2.0**-50  # what is left of f - L q, of the terms of L q: rounding
-
-
-def slow_contact_fields(masses: int) -> list:
-    """The fields of `law_of` for it."""
-    return [
-        (
-            "fast",
-            np.int64,
-        ),  # coordinates of the motion that has died away, so that the slow one is followed alone; or 0
-        ("term", float, (2, 2 * masses + 3)),  # of a series of q
-    ]
+DIED = 2.0**-53  # what is left of f - L q, of the terms of L q: rounding of their sum
+DIED_BEFORE = 2.0**-48  # where f was L q at the beginning of the series before: rounding of that
 
 
 @inline
@@ -46,50 +35,66 @@ def fast_that_died(contact, n, omega):
 
 
 @jit
-def slow_part(contact, L, fast, a):
-    """(L q) of row a in twice the digits, and the sum of the sizes of its terms."""
+def slow_speed(contact, L):
+    """(L q)_0, of products and sums in twice the digits, as `drive_of`."""
     y, states = contact.y, len(contact.y)
-    total, low, size = L[a, states + 2], 0.0, abs(L[a, states + 2])
-    for j in range(fast, states):
-        place = 0 if j == 1 else j  # delta stands first in y
-        term, term_low = multiply(L[a, j], 0.0, y[place], contact.low[place])
+    total, low = L[0, states + 2], 0.0
+    for j in range(2, states):
+        term, term_low = multiply(L[0, j], 0.0, y[j], contact.low[j])
         total, low = add(total, low, term, term_low)
-        size += abs(term)
     for j in range(2):
-        term, term_low = multiply(L[a, states + j], 0.0, contact.phase[j], contact.phase_low[j])
+        term, term_low = multiply(L[0, states + j], 0.0, contact.phase[j], contact.phase_low[j])
         total, low = add(total, low, term, term_low)
-        size += abs(term)
-    return total, low, size
+    return total
 
 
 @jit
 def has_died(contact, n, fast):
-    """Whether phi is rounding by now. Then f becomes L q."""
-    L, F, y, low = contact.L[part_of(n, fast)], contact.F[part_of(n, fast)], contact.y, contact.low
-    speed, speed_low, size = slow_part(contact, L, fast, 0)
-    fast_speed = abs((y[1] - speed) + (low[1] - speed_low))
+    """Whether phi is rounding by now. Then f becomes L q.
+
+    The first row of it follows from the equation of motion, delta'' = G_00 delta + G_01 delta' + a with delta'' of the
+    slow motion: a, what presses the mass on the stop, may be a small difference of large terms, and L q by itself would
+    part from it by a rounding of these.
+    """
+    part, G, y, low = part_of(n, fast), contact.equations[n], contact.y, contact.low
+    L, F, states = contact.L[part], contact.F[part], len(contact.y)
+    put_slow(contact, fast)
+    bend, size = 0.0, 0.0
+    for j in range(fast, states + 3):
+        bend += contact.bend[part, j] * contact.term[0, j]
+        size += abs(L[fast - 1, j] * contact.term[0, j])
+    a = drive_of(contact, G)
     if fast == 1:
-        if not fast_speed <= DIED * size:
-            return False
+        delta, speed = y[0], (bend - G[0, 0] * y[0] - a) / G[0, 1]
+        left = abs((y[1] - speed) + low[1])
     else:
-        delta, delta_low, size = slow_part(contact, L, fast, 1)
+        speed = slow_speed(contact, L)
+        delta = (bend - G[0, 1] * speed - a) / G[0, 0]
         rate = max(math.sqrt(abs(F[0, 0] * F[1, 1] - F[0, 1] * F[1, 0])), abs(F[0, 0] + F[1, 1]))
-        if not abs((y[0] - delta) + (low[0] - delta_low)) + fast_speed / rate <= DIED * size:
-            return False
-        y[0], low[0] = delta, delta_low
-    y[1], low[1] = speed, speed_low
+        left = abs((y[0] - delta) + low[0]) + abs((y[1] - speed) + low[1]) / rate
+    if not left <= (DIED_BEFORE if contact.fast == fast else DIED) * size:
+        return False
+    if fast == 2:
+        y[0], low[0] = delta, 0.0
+    y[1], low[1] = speed, 0.0
     return True
+
+
+@jit
+def put_slow(contact, fast):
+    """q, as the first term of its series."""
+    y, term, states = contact.y, contact.term[0], len(contact.y)
+    for j in range(fast, states):
+        term[j] = y[0] if j == 1 else y[j]
+    term[states], term[states + 1], term[states + 2] = contact.phase[0], contact.phase[1], 1.0
 
 
 @jit
 def load_slow(contact, n, fast):
     """Taylor series from y on, of the slow motion."""
     S, L, c, y = contact.S[part_of(n, fast)], contact.L[part_of(n, fast)], contact.c, contact.y
-    size, states = len(S), len(y)
-    for j in range(fast, states):
-        contact.term[0, j] = y[0] if j == 1 else y[j]
-    contact.term[0, states], contact.term[0, states + 1] = contact.phase[0], contact.phase[1]
-    contact.term[0, states + 2] = 1.0
+    size = len(S)
+    put_slow(contact, fast)
     for k in range(ORDER):
         term, after = contact.term[k % 2], contact.term[(k + 1) % 2]
         for m in range(1, len(c)):

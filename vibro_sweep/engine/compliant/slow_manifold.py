@@ -33,8 +33,14 @@ def slow_manifold_fields(masses: int) -> list:
         ("L", float, (4, 2, n)),
         ("H", float, (4, n, 2)),
         ("F", float, (4, 2, 2)),
+        ("bend", float, (4, n)),  # delta'' of the slow motion, by q: the row of delta' of L S
         ("whole", float, (n, n)),  # x' = whole x, of one of them
         ("old", float, (n, n)),  # what is replaced
+        ("term", float, (2, n)),  # of a series of q
+        (
+            "fast",
+            np.int64,
+        ),  # coordinates of the motion that has died away, and is left out; or 0
     ]
 
 
@@ -53,6 +59,10 @@ def is_set_apart(contact, n, fast, omega):
         found = set_slow(contact, part, fast) and set_share(contact, part, fast)
         contact.apart[part] = 1 if found else -1
         contact.slow_rate[part] = slow_rate_of(contact, contact.S[part], fast, omega)
+        for j in range(fast, len(contact.whole)):
+            contact.bend[part, j] = 0.0
+            for e in range(fast, len(contact.whole)):
+                contact.bend[part, j] += contact.L[part, 0, e] * contact.S[part, e, j]
     return contact.apart[part] > 0
 
 
