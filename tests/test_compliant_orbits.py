@@ -170,6 +170,18 @@ def test_a_mixed_machine_has_contacts_and_impacts():
         assert simulated == pytest.approx(state, abs=1e-10)
 
 
+@pytest.mark.slow
+def test_a_ball_that_flies_freely_at_its_graze():
+    """There both multipliers of the free flight are 1, and pitchforks within rounding of the graze were found."""
+    ball = vs.Oscillator.named(
+        "ball_in_cavity", mass_ratio=0.05, zeta=0.01, F=0.05, omega=1, b=0.8, tau=0, k_stop=4, c_stop=0.1
+    )
+    branch = vs.continue_orbit(vs.periodic_orbit(ball, itinerary="LR"), "b", (0.2, 3))
+    found = [one.type for one in branch.special]
+    assert found == ["boundary", "pitchfork", "neimark_sacker", "fold", "fold", "neimark_sacker", "graze"]
+    assert branch.ends.parameters["b"] == pytest.approx(2.5, abs=1e-13)  # the box has the amplitude F/(2 zeta)
+
+
 def test_files_hold_them(tmp_path):
     orbit = vs.periodic_orbit(one_mass(), itinerary="R")
     data = orbit.to_xarray()

@@ -228,8 +228,15 @@ class BranchRun:
             return True
         self._add(last)
         if end:
+            if turns_at(self.curve, end.event):
+                self._forget_beside(last.value, end.error)
             self.special.append(self._end(end.event, last, end.error))
         return end is not None
+
+    def _forget_beside(self, value: float, error: float) -> None:
+        """Take back bifurcations that rounding does not tell from the graze: multipliers of free modes are 1 there."""
+        while self.special and abs(self.special[-1].parameters[self.name] - value) <= self.special[-1].error + error:
+            self.special.pop()
 
     def _bifurcate(self, found: list[LocatedEvent]) -> bool:
         """Record bifurcations. True where the run ends at the first."""
