@@ -29,3 +29,25 @@ def test_an_orbit_goes_on_where_its_stops_relax():
     np.testing.assert_allclose(states[0], found.section[-1], rtol=0, atol=1e-6)
     assert (words["contacts"], words["impacts"], words["rests"]) == (2, 0, 0)
     assert np.all((arrays["contact_touch"] >= 0) & (arrays["contact_release"] > arrays["contact_touch"]))
+
+
+def test_a_contact_over_the_section_counts_once():
+    """Whatever the phase at which periods begin: the same two contacts, of which the section cuts one now and then."""
+    drawn = set()
+    for tau in (0.0, 1.5, 3.0, 4.5):
+        system = SCENE["system"] | {
+            "release": "displacement",
+            "omega": 2.2,
+            "F": 2.4,
+            "k_stop": 40,
+            "c_stop": 4,
+            "tau": tau,
+        }
+        sweep = {"b": {"start": 0.9, "stop": 1.1, "num": 3}}
+        found = settled(
+            view_of(scene_of(SCENE | {"system": system, "sweep": sweep, "start": {"v1": 3}}, "scene")), 1.0, 0, None
+        )
+        arrays, words = orbit_message(found)
+        assert found.period == 1 and words["contacts"] == 2
+        drawn.add(len(arrays["contact_touch"]))
+    assert drawn == {2, 3}

@@ -94,8 +94,14 @@ def orbit_message(found: Settled) -> tuple[dict[str, np.ndarray], dict[str, Any]
     arrays |= {"t": times.astype("f4"), "states": states.astype("f4").ravel()}
     arrays |= {"impact_t": shown["t"].astype("f4"), "impact_side": shown["side"].astype("i1")}
     arrays |= {"contact_touch": pressed[0].astype("f4"), "contact_release": pressed[1].astype("f4")}
-    ended = found.period * T * (1 - 1e-9) if found.period else np.inf
-    return arrays, words | {"contacts": int(np.count_nonzero((touch >= 0) & (touch < ended)))}
+    return arrays, words | {"contacts": _contacts(touch, release, found.period * T * (1 - 1e-9))}
+
+
+def _contacts(touch: np.ndarray, release: np.ndarray, end: float) -> int:
+    """Contacts of an orbit that repeats itself after the time `end`, where one at t = 0 goes on; 0: it does not."""
+    there = (touch >= 0) & (touch < (end or np.inf))
+    count = int(np.count_nonzero(there))
+    return count - int(end > 0 and count > 1 and touch[there][0] == 0 and release[there][-1] > end)
 
 
 def _itinerary(impacts: np.ndarray, T: float, period: int) -> str:
