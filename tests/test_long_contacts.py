@@ -22,7 +22,7 @@ def chain(masses, k, z, release, **numbers):
     given = dict(force=0.1 * np.arange(1, masses + 1), omega=0.9, b=0.1, tau=0.3, stops="right", constant=5 * first)
     damping = 2 * z * k**0.5
     law = dict(k_stop=k, c_stop=damping, release=release, contact_normal=first)
-    return vs.Oscillator(np.diag(np.arange(1.0, masses + 1)), K, 0.05 * K, **(given | law | numbers))
+    return vs.Oscillator(np.diag(np.arange(1.0, masses + 1)), K, 0.2 * K, **(given | law | numbers))
 
 
 def exponents(system):
@@ -45,7 +45,7 @@ def exponents(system):
 def test_exponents_of_a_mass_that_stays_on_its_stop(masses, k, z, release):
     system = chain(masses, k, z, release)
     data = vs.sweep(
-        system, {"omega": [0.9]}, start=[0.0] * (2 * masses), transient=700, record=20, workers=1,
+        system, {"omega": [0.9]}, start=[0.0] * (2 * masses), transient=3000, record=20, workers=1,
         observe=["section", "lyapunov", "contacts"],
     ).isel(omega=0)  # fmt: skip
     assert data.status == 0 and data.period == 1 and data.contact_time == pytest.approx(1, abs=1e-12)
@@ -63,12 +63,12 @@ def test_exponents_of_long_contacts_that_end(masses, k, z, release):
     force = 6 * np.eye(masses)[0]
     system = chain(masses, k, z, release, force=force, constant=2 * np.eye(masses)[0])
     report = compliant_exponents.compared_at([0.1], system)
-    assert report.period and report.share > 0.3
+    assert report.period and report.share > 0.25
     assert np.all(report.errors <= 3 * report.stated) and report.stated.max() < 1e-11
 
 
 @pytest.mark.parametrize(
-    "masses, k, z", [(1, 1e4, 0.5), *slow_cases((1, 1e6, 0.2), (2, 1e4, 1.5), (3, 1e4, 0.3), (2, 100, 30))]
+    "masses, k, z", [(1, 1e4, 0.5), *slow_cases((1, 1e6, 0.2), (2, 1e4, 1.5), (3, 1e4, 0.3), (2, 100, 12))]
 )
 @pytest.mark.parametrize("release", ["displacement", "force"])
 def test_long_contacts_in_many_digits(masses, k, z, release):
