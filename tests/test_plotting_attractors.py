@@ -6,6 +6,7 @@ import h5py
 import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
+from matplotlib.text import Text
 from support import slow_cases
 
 import vibro_sweep as vs
@@ -213,3 +214,30 @@ def test_empty_axes_say_why(tmp_path, text):
         fig = plotting.figure(path, one)
         panels = [ax for ax in fig.axes if ax.get_label() != "<colorbar>"]
         assert all(any("all points failed" in text.get_text() for text in ax.texts) for ax in panels), one
+
+
+@pytest.mark.parametrize("law, words", [
+    ("k_stop: 10", {"period 1, 1 contact right, 1 left", "without contact, period 1"}),
+    ("k_stop: 10, R_left: 0.7", {"period 1, 1 impact right, 1 left", "non-impacting, period 1"}),
+])  # fmt: skip
+def test_what_meets_a_compliant_stop_is_called_a_contact(tmp_path, law, words):
+    """Beside a rigid one both are called impacts, as they are counted together."""
+    system = f"system: {{type: one_mass, zeta: 0.02, F: 0.8, omega: 1.6, b: 1, tau: 0, {law}}}"
+    text = """
+sweep: {x1: {start: -0.9, stop: 0.9, num: 9}, v1: {start: -2, stop: 2, num: 9}}
+orbit: {transient: 600, record: 60}
+observe: [attractors]"""
+    fig = plotting.figure(run(tmp_path / "basins.h5", text, system))
+    assert {one.get_text().split(" (")[0] for one in fig.legends[0].get_texts()} == words
+
+
+@pytest.mark.parametrize("law, missed", [("k_stop: 10", False), ("R: 0.7", True)])
+def test_a_diagram_of_compliant_stops_does_not_miss_impacts(tmp_path, law, missed):
+    """Of rigid stops beyond the motion it says that there are none."""
+    system = f"system: {{type: one_mass, zeta: 0.02, F: 0.8, omega: 1.6, b: 30, tau: 0, {law}}}"
+    text = """
+sweep: {b: {values: [29, 30, 31]}}
+orbit: {transient: 300, record: 60}
+observe: [section, impacts]"""
+    fig = plotting.figure(run(tmp_path / "diagram.h5", text, system), "bifurcation")
+    assert any("no impacts" in one.get_text() for one in fig.findobj(Text)) == missed

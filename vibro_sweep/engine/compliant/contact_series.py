@@ -46,18 +46,19 @@ def leave(contact, o, stops, side):
 
 
 @jit
-def drive_of(contact, G):
-    """a of delta'' = -(k0 + k) delta - (c0 + c) delta' + a, of products and sums in twice the digits.
+def dot_slow(contact, row):
+    """row . (w2, w2', ..., sin, cos, 1), which stand after delta and delta', of products and sums in twice the digits.
 
-    In a contact of many series delta follows a, whose terms are large where it is small at the end. Constant errors of
-    a shift that end a little, but a rounding of its own in each series would be a jump that delta' follows.
+    So a of delta'' = -(k0 + k) delta - (c0 + c) delta' + a is formed. In a contact of many series delta follows a,
+    whose terms are large where it is small at the end. Constant errors of a shift that end a little, but a rounding of
+    its own in each series would be a jump that delta' follows.
     """
-    states, a, low = len(contact.y), G[0, len(contact.y) + 2], 0.0
+    states, a, low = len(contact.y), row[len(contact.y) + 2], 0.0
     for j in range(2, states):
-        term, term_low = multiply(G[0, j], 0.0, contact.y[j], contact.low[j])
+        term, term_low = multiply(row[j], 0.0, contact.y[j], contact.low[j])
         a, low = add(a, low, term, term_low)
     for j in range(2):
-        term, term_low = multiply(G[0, states + j], 0.0, contact.phase[j], contact.phase_low[j])
+        term, term_low = multiply(row[states + j], 0.0, contact.phase[j], contact.phase_low[j])
         a, low = add(a, low, term, term_low)
     return a
 
@@ -73,7 +74,7 @@ def load_contact(contact, side, omega):
         share = 1.0 / ((n + 1.0) * (n + 2.0))
         for i in range(masses):
             if n == 0 and i == 0:
-                total = drive_of(contact, G)
+                total = dot_slow(contact, G[0])
             else:
                 total = G[i, states] * sin + G[i, states + 1] * cos
                 if n == 0:

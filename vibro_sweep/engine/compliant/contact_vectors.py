@@ -13,6 +13,18 @@ def set_before(t, i, contact, side, j):
 
 
 @jit
+def put_after(t, i, contact, side, j):
+    """Vector j becomes the one that is (delta, delta', w2, ..) in `after`."""
+    Z, to, after, size = t.Z, t.to_frame, contact.after, len(t.growth)
+    from_contact(contact, side, after)
+    for m in range(size):
+        z = 0.0
+        for a in range(size):
+            z += to[size * m + a, i] * after[a]
+        Z[size * m + j, i] = z
+
+
+@jit
 def to_contact(contact, side, x):
     """(q1, q1', q2, ..) as (delta, delta', w2, ..)."""
     for m in range(1, len(contact.push)):

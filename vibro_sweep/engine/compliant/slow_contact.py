@@ -6,11 +6,10 @@ however stiff the stop, and where the contact ends is found in it as in others.
 
 import math
 
-from vibro_sweep.engine.compliant.contact_series import drive_of
+from vibro_sweep.engine.compliant.contact_series import dot_slow
 from vibro_sweep.engine.compliant.slow_manifold import is_set_apart, part_of
 from vibro_sweep.engine.simd.jit import inline, jit
 from vibro_sweep.engine.tables.flight import ORDER, WIDTH
-from vibro_sweep.engine.tables.twofold import add, multiply
 
 WORTHWHILE = 4.0  # times as long as other series in contact
 DIED = 2.0**-53  # what is left of f - L q, of the terms of L q: rounding of their sum
@@ -29,28 +28,14 @@ def fast_that_died(contact, n, omega):
     for fast in (2, 1):
         if not is_set_apart(contact, n, fast, omega) or slow_step(contact, n, fast) < WORTHWHILE * contact.step[n]:
             continue
-        if has_died(contact, n, fast):
+        if drop_fast_motion(contact, n, fast):
             return fast
     return 0
 
 
 @jit
-def slow_speed(contact, L):
-    """(L q)_0, of products and sums in twice the digits, as `drive_of`."""
-    y, states = contact.y, len(contact.y)
-    total, low = L[0, states + 2], 0.0
-    for j in range(2, states):
-        term, term_low = multiply(L[0, j], 0.0, y[j], contact.low[j])
-        total, low = add(total, low, term, term_low)
-    for j in range(2):
-        term, term_low = multiply(L[0, states + j], 0.0, contact.phase[j], contact.phase_low[j])
-        total, low = add(total, low, term, term_low)
-    return total
-
-
-@jit
-def has_died(contact, n, fast):
-    """Whether phi is rounding by now. Then f becomes L q.
+def drop_fast_motion(contact, n, fast):
+    """f becomes L q if phi is rounding by now. Returns whether it is.
 
     The first row of it follows from the equation of motion, delta'' = G_00 delta + G_01 delta' + a with delta'' of the
     slow motion: a, what presses the mass on the stop, may be a small difference of large terms, and L q by itself would
@@ -63,12 +48,12 @@ def has_died(contact, n, fast):
     for j in range(fast, states + 3):
         bend += contact.bend[part, j] * contact.term[0, j]
         size += abs(L[fast - 1, j] * contact.term[0, j])
-    a = drive_of(contact, G)
+    a = dot_slow(contact, G[0])
     if fast == 1:
         delta, speed = y[0], (bend - G[0, 0] * y[0] - a) / G[0, 1]
         left = abs((y[1] - speed) + low[1])
     else:
-        speed = slow_speed(contact, L)
+        speed = dot_slow(contact, L[0])
         delta = (bend - G[0, 1] * speed - a) / G[0, 0]
         rate = max(math.sqrt(abs(F[0, 0] * F[1, 1] - F[0, 1] * F[1, 0])), abs(F[0, 0] + F[1, 1]))
         left = abs((y[0] - delta) + low[0]) + abs((y[1] - speed) + low[1]) / rate

@@ -10,7 +10,7 @@ All have determinant 1. With pi = delta' + c delta in place of delta' only the p
 
 import math
 
-from vibro_sweep.engine.compliant.contact_vectors import from_contact, set_before
+from vibro_sweep.engine.compliant.contact_vectors import put_after, set_before
 from vibro_sweep.engine.compliant.law import lane_of
 from vibro_sweep.engine.compliant.relaxing import GONE
 from vibro_sweep.engine.compliant.touch_while_relaxing import touch_relaxing
@@ -36,7 +36,7 @@ def carry_over_contact(t, i, contact, side, w, ended):
     log_volume = touch_relaxing(t, i, contact, side) if contact.begun == UNRELAXED else 0.0
     if contact.begun != UNRELAXED and contact.damping[lane_of(side)] * w > SHRUNK:
         orthonormalise(t, only(i))
-    n, size, before, after, Z, to = lane_of(side), len(t.growth), contact.before, contact.after, t.Z, t.to_frame
+    n, size, before, after = lane_of(side), len(t.growth), contact.before, contact.after
     d, p, rate = contact.damping[n], contact.preload[n], contact.equations[n, 0, 1]
     for m in range(1, len(contact.push)):
         rate += contact.equations[n, m, 2 * m + 1]
@@ -65,12 +65,7 @@ def carry_over_contact(t, i, contact, side, w, ended):
             after[1] -= d * after[0]
         if ended:
             t.places[n * size + j, i] = after[0]
-        from_contact(contact, side, after)
-        for m in range(size):
-            z = 0.0
-            for a in range(size):
-                z += to[size * m + a, i] * after[a]
-            Z[size * m + j, i] = z
+        put_after(t, i, contact, side, j)
     t.mixed[i] = 1.0
     if contact.begun == UNRELAXED:
         orthonormalise(t, only(i))

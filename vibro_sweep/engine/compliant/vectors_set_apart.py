@@ -8,7 +8,7 @@ right angles to the first, and grows by what is left of the determinant.
 
 import math
 
-from vibro_sweep.engine.compliant.contact_vectors import from_contact, set_before
+from vibro_sweep.engine.compliant.contact_vectors import put_after, set_before
 from vibro_sweep.engine.compliant.slow_manifold import part_of
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.tables.flight import ORDER
@@ -113,9 +113,7 @@ def fast_flight(F, fast, u):
 def fly_vectors_apart(t, i, contact, side, n, fast, u):
     """The vectors after the time u."""
     part, parted, taken, states = part_of(n, fast), contact.parted, contact.taken, len(contact.parted)
-    S, L, H, F, after, to, Z = (
-        contact.S[part], contact.L[part], contact.H[part], contact.F[part], contact.after, t.to_frame, t.Z
-    )  # fmt: skip
+    S, L, H, F, after = contact.S[part], contact.L[part], contact.H[part], contact.F[part], contact.after
     slow = states - fast
     decay, c, s, gamma, log_det = fast_flight(F, fast, u)
     det = parted[0, slow] * parted[1, slow + 1] - parted[1, slow] * parted[0, slow + 1] if fast == 2 else 0.0
@@ -156,12 +154,7 @@ def fly_vectors_apart(t, i, contact, side, n, fast, u):
             for e in range(fast, states):
                 after[a] += L[a, e] * after[e]
         after[0], after[1] = after[1], after[0]
-        from_contact(contact, side, after)
-        for m in range(states):
-            z = 0.0
-            for e in range(states):
-                z += to[states * m + e, i] * after[e]
-            Z[states * m + j, i] = z
+        put_after(t, i, contact, side, j)
     t.mixed[i] = 1.0
     orthonormalise(t, only(i))
 
