@@ -131,18 +131,8 @@ def fly_vectors_apart(t, i, contact, side, n, fast, u):
             parted[0, slow + 1], parted[1, slow + 1] = -parted[0, slow + 1], -parted[1, slow + 1]
     else:
         parted[0, slow] /= first
-    if t.collected:
-        for m in range(len(t.normal)):
-            t.normal[m, i] = 0.0
-        for b in range(fast):
-            for m in range(slow):
-                t.normal[place_of(states, m, slow + b), i] = taken[m, b]
-        if fast == 2:
-            t.normal[place_of(states, slow, slow + 1), i] = along
-        collect(t, 1 << i)
     lengths = math.log(first) - decay, second - decay
-    for b in range(fast):
-        t.logs[slow + b, i] += lengths[b]
+    count_last(t, i, taken, slow, fast, along, lengths)
     move_places(t, i, taken, slow, fast, along, lengths)
     for j in range(states):
         for e in range(states):
@@ -157,6 +147,23 @@ def fly_vectors_apart(t, i, contact, side, n, fast, u):
         put_after(t, i, contact, side, j)
     t.mixed[i] = 1.0
     orthonormalise(t, only(i))
+
+
+@jit
+def count_last(t, i, taken, slow, fast, along, lengths):
+    """Count the growth of the last vectors, and of how much of others they were made. lengths: logarithms."""
+    if t.collected:
+        states = slow + fast
+        for m in range(len(t.normal)):
+            t.normal[m, i] = 0.0
+        for b in range(fast):
+            for m in range(slow):
+                t.normal[place_of(states, m, slow + b), i] = taken[m, b]
+        if fast == 2:
+            t.normal[place_of(states, slow, slow + 1), i] = along
+        collect(t, 1 << i)
+    for b in range(fast):
+        t.logs[slow + b, i] += lengths[b]
 
 
 @jit
