@@ -7,6 +7,7 @@ import pytest
 import vibro_sweep as vs
 from vibro_sweep.model.stop_force import force_of
 from vibro_sweep.plotting import figure, kinds
+from vibro_sweep.plotting.drawn_curves import Drawn, plot_curves
 from vibro_sweep.plotting.sweep_result import PlotError
 
 SOFT = dict(zeta=0.02, F=0.6, omega=0.9, k_stop=20, c_stop=8, b=1, tau=0, stops="right")
@@ -122,6 +123,28 @@ def test_values_in_proportion_have_a_logarithmic_axis(kind, values, scale):
     assert ax.get_xscale() == scale
     low, high = ax.get_xlim()
     assert low < values[0] and values[-1] < high < 1.3 * values[-1]
+
+
+def curve_of(p, q):
+    return Drawn("fold", np.asarray(p), np.asarray(q), np.zeros(len(p), bool), [])
+
+
+@pytest.mark.parametrize(
+    "names, scales",
+    [
+        (("b", "k_stop"), ("linear", "log")),
+        (("c_stop_left", "b"), ("log", "linear")),
+        (("b", "omega"), ("linear", "linear")),
+    ],
+)
+def test_the_stiffness_of_a_stop_has_a_logarithmic_axis_over_decades(names, scales):
+    (ax,) = plot_curves([curve_of([0.01, 2], [3.0, 1e4]), curve_of([1, 3], [20, 5e3])], names).axes
+    assert (ax.get_xscale(), ax.get_yscale()) == scales
+
+
+def test_a_damper_from_zero_on_has_an_even_axis():
+    (ax,) = plot_curves([curve_of([0, 2000.0], [1, 2])], ("c_stop", "b")).axes
+    assert ax.get_xscale() == "linear"
 
 
 @pytest.mark.parametrize("kind", ["contacts", "energy"])

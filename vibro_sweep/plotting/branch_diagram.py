@@ -10,6 +10,7 @@ from vibro_sweep.model.branch_file import BRANCHES
 from vibro_sweep.model.refusals import shown
 from vibro_sweep.model.state import MOST_MASSES, state
 from vibro_sweep.plotting import joined, sweeps
+from vibro_sweep.plotting.decades import scale_of
 from vibro_sweep.plotting.labels import arrange, legend_below, name_beside
 from vibro_sweep.plotting.plot_options import PlotOptions
 from vibro_sweep.plotting.ragged import RaggedFile, sweep_below
@@ -43,6 +44,8 @@ def branches(path, options: PlotOptions, ax=None):
     together = joined.margins(file, _sections(file)) if name == "stop_distance" else np.ones(len(values), bool)
     _lines(ax, file, _drawn(file, name, values, options.over is not None), together)
     marks = _marks(ax, file, values)
+    if options.over is None:
+        ax.set_xscale(scale_of(file.parameters[0], file[file.parameters[0]]))
     ax.set_xlabel(axis_name(file.parameters[0], file.unit(file.parameters[0])))
     if options.xlim:
         ax.set_xlim(options.xlim)

@@ -9,7 +9,7 @@ from vibro_sweep.model.bifurcations import CODIMENSION_TWO, CURVES
 from vibro_sweep.model.branch_file import CHART
 from vibro_sweep.model.refusals import shown
 from vibro_sweep.plotting import planes
-from vibro_sweep.plotting.drawn_curves import Drawn, draw, handles, name_points
+from vibro_sweep.plotting.drawn_curves import Drawn, draw, handles, name_points, scale
 from vibro_sweep.plotting.labels import arrange, legend_below
 from vibro_sweep.plotting.plot_options import PlotOptions
 from vibro_sweep.plotting.ragged import RaggedFile, sweep_below
@@ -36,6 +36,7 @@ def chart(path: str | Path, options: PlotOptions, ax=None):
     if ax is None:
         fig = options.page(5.0, f"Bifurcation curves: {file.title}")
         ax = fig.subplots()
+    scale(ax, curves, names)
     draw(ax, curves)
     ax.set(xlim=options.xlim or ax.get_xlim(), ylim=options.ylim or ax.get_ylim())
     found = handles(curves, _frame(ax))

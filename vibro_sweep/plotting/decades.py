@@ -4,9 +4,12 @@ import numpy as np
 from matplotlib.colors import LogNorm, Normalize, SymLogNorm
 from matplotlib.ticker import FixedLocator, NullLocator
 
+from vibro_sweep.model.contact_laws import LAWS
+
 SPAN = 10.0  # the largest of the numbers over their lower quartile, from which on they span decades
 FEW = 1.5  # decades of an axis on which 2 and 5 are named as well
-DECADES, EVEN = 2.0, 5.0  # swept values in proportion: so many at least, and the largest step over the smallest one
+DECADES, EVEN = 2.0, 5.0  # values in proportion: so many at least, and of swept ones the largest step over the smallest
+OF_STOPS = frozenset(one.name for law in LAWS.values() for one in (*law.numbers, *law.left))
 ZERO = 0.5  # the part of the axis from 0 to the least number above it, in decades
 
 
@@ -28,6 +31,14 @@ def in_proportion(values) -> bool:
 def along_axis(values):
     """The functions from rising values to where they lie along their axis, and back."""
     return (np.log, np.exp) if in_proportion(values) else (np.asarray, np.asarray)
+
+
+def scale_of(name: str, values) -> str:
+    """The scale of the axis of a number that branches and curves pass through, as matplotlib calls it: stiffnesses and
+    dampers of stops go over decades, where most of what happens would lie on the edge."""
+    known = np.asarray(values)[np.isfinite(values)]
+    over_decades = name in OF_STOPS and known.size > 0 and known.min() > 0
+    return "log" if over_decades and known.max() >= 10**DECADES * known.min() else "linear"
 
 
 def scale_axis(ax, values) -> None:

@@ -9,6 +9,7 @@ from matplotlib import patheffects
 from matplotlib.lines import Line2D
 
 from vibro_sweep.model.bifurcations import BY_NAME, CODIMENSION_TWO, TYPES
+from vibro_sweep.plotting.decades import scale_of
 from vibro_sweep.plotting.labels import arrange, legend_below, name_beside
 from vibro_sweep.plotting.plot_options import PlotOptions
 from vibro_sweep.plotting.style import INK, axis_name, with_unit
@@ -41,6 +42,7 @@ def plot_curves(curves: list[Drawn], names: tuple[str, str], system=None, width:
     with mpl.rc_context(options.style):
         fig = options.page(4.2, "bifurcation curves")
         ax = fig.subplots()
+        scale(ax, curves, names)
         draw(ax, curves)
         known = getattr(system, "described", {})  # a Family has numbers without units
         labels = [with_unit(axis_name(name), known[name].units if name in known else "1", system) for name in names]
@@ -49,6 +51,12 @@ def plot_curves(curves: list[Drawn], names: tuple[str, str], system=None, width:
         arrange(fig)
         name_points(ax, curves)
         return fig
+
+
+def scale(ax, curves: list[Drawn], names) -> None:
+    """Set the scales of the axes, of these two numbers."""
+    across, up = (np.concatenate(values) for values in zip(*((one.p, one.q) for one in curves), strict=True))
+    ax.set(xscale=scale_of(names[0], across), yscale=scale_of(names[1], up))
 
 
 def draw(ax, curves: list[Drawn], halo: bool = False) -> None:
