@@ -4,7 +4,8 @@ numba looks after each pass for how long every variable lives, for references th
 computes into memory and takes it out again (values.py); measures how long each call of LLVM takes, once for each kernel
 that is being compiled, and tells its listeners of each call and each pass; asks five questions of every part of a
 statement in which it looks for variables; finds the type of an operation and of an attribute anew wherever it stands,
-how its arguments are passed, and whether the function that writes it takes a line number; goes through a whole kernel
+how its arguments are passed, and whether the function that writes it takes a line number; imports what makes a constant
+for each constant, and writes names in several steps; goes through a whole kernel
 for each variable that is assigned twice; writes out each statement and, at each pass, the types of the kernel; imports
 all that could be called, once for each kernel; searches for `with` and for dictionaries; asks LLVM for the size of a
 type as often as a variable has it; and prepares, for each operation, to catch warnings about it and to tell where an
@@ -16,6 +17,7 @@ import functools
 from collections.abc import Iterator
 
 from llvmlite import ir
+from llvmlite.ir._utils import DuplicatedNameError, NameScope
 from numba.core import (
     base,
     byteflow,
@@ -41,6 +43,7 @@ from vibro_sweep.engine.simd import values
 
 _lifetimes, _call_type = PostProcessor.run, types.Function.get_call_type
 _attribute = BaseContext.find_matching_getattr_template
+_escaped = ir.NamedValue._get_reference
 _pack, _rewrite = base.BaseContext.get_arg_packer, ssa._run_block_rewrite
 
 
@@ -119,6 +122,29 @@ def _variables_in(self, parts):
     return found
 
 
+def _constant(self, value):
+    """`ir.Type.__call__`, which imports what it calls each time."""
+    return ir.Constant(self, value)
+
+
+def _register(self, name, deduplicate=False):
+    """`NameScope.register` of a name, or of the next one that begins with it and is free."""
+    begin, used, numbers = name, self._useset, self._basenamemap
+    if name in used and not deduplicate:
+        raise DuplicatedNameError(name)
+    while name in used:
+        numbers[begin] += 1
+        name = f"{begin}.{numbers[begin]}"
+    used.add(name)
+    return name
+
+
+def _reference(self):
+    """`NamedValue._get_reference` of a name without quotes in it."""
+    name = self._name
+    return _escaped(self) if '"' in name or "\\" in name else f'{self.name_prefix}"{name}"'
+
+
 def _null_context(*args, **about):
     """Replaces numba's context managers that are entered for every operation."""
     return _nothing
@@ -169,6 +195,9 @@ INSTEAD = (
     (arrayobj, "make_array", values.make_array),
     (lowering.Lower, "_find_singly_assigned_variable", values.find_values),
     (lowering.Lower, "storevar", values.store_variable),
+    (ir.Type, "__call__", _constant),
+    (NameScope, "register", _register),
+    (ir.NamedValue, "_get_reference", _reference),
     (ir.IRBuilder, "extract_value", values.extract_value),
     (ir.IRBuilder, "insert_value", values.insert_value),
     (ir.IRBuilder, "mul", values.mul),
