@@ -4,12 +4,12 @@ import numpy as np
 from matplotlib.colors import LogNorm, Normalize, SymLogNorm
 from matplotlib.ticker import FixedLocator, NullLocator
 
-from vibro_sweep.model.contact_laws import LAWS
+from vibro_sweep.model.parameters import OTHER_STOPS
 
 SPAN = 10.0  # the largest of the numbers over their lower quartile, from which on they span decades
 FEW = 1.5  # decades of an axis on which 2 and 5 are named as well
 DECADES, EVEN = 2.0, 5.0  # values in proportion: so many at least, and of swept ones the largest step over the smallest
-OF_STOPS = frozenset(one.name for law in LAWS.values() for one in (*law.numbers, *law.left))
+OF_STOPS = frozenset(one.name for one in OTHER_STOPS)
 ZERO = 0.5  # the part of the axis from 0 to the least number above it, in decades
 
 
