@@ -124,4 +124,12 @@ def error_of(
         said = p - p[middle] - np.outer(tests, rate)
         slope, mean = np.polyfit(BESIDE, said, 1)
         scatter = np.abs(said - np.outer(BESIDE, slope) - mean).max()
-    return float(max(TIMES * scatter, OF_TESTS * rounding_error(curve, point, secant.row)))
+    return float(max(TIMES * scatter, OF_TESTS * rounding_error(curve, point, _across(curve, point, secant.row))))
+
+
+def _across(curve: SolutionCurve, point: Point, row: np.ndarray) -> np.ndarray:
+    """The plane across the secant, with parameters in units of their size: in those of narrow bounds it would hold
+    them, and rounding of the equations would move the orbit alone, with which the test vanishes elsewhere."""
+    row, own, p = row.copy(), slice(2 * curve.K, 2 * curve.K + 2), np.abs(point.p[:2])
+    row[own] *= np.minimum(1.0, curve.unit[:2] / np.where(p > 0, p, curve.unit[:2])) ** 2
+    return row
