@@ -21,15 +21,16 @@ def rounding_error(curve: "SolutionCurve", place: Place, row: np.ndarray) -> flo
 
 
 def sensitivity(curve: "SolutionCurve", place: Place, row: np.ndarray) -> float:
-    """The change of the parameters, on the plane across `row`, if each equation is off by its own size."""
+    """The change of the parameters, on the plane across `row`, if each equation is off by its own size; infinite
+    where they are singular."""
     if not curve.assemble(place, row):
-        return 0.0
+        return np.inf
     c, n, work, events = curve.problem, curve.n, curve.workspace.work[0], curve.workspace.events
     free, found = unknowns(c), []
     try:
         inverse = np.linalg.inv(work["ends"][: n + free, : n + free])
     except np.linalg.LinAlgError:
-        return 0.0
+        return np.inf
     for j in range(c.parameters):
         by_last, by_rows = inverse[n + j, :n], inverse[n + j, n:]
         work["left"][:] = by_last

@@ -91,6 +91,13 @@ class Secant:
         """The point at a share of the secant, without keeping it."""
         return self._point(share, self.seen, exact)
 
+    def across(self, place: Place) -> np.ndarray:
+        """The plane across the secant, with parameters in units of their size: in those of narrow bounds it would hold
+        them, and rounding of the equations would move the orbit alone, with which the test vanishes elsewhere."""
+        row, own, p = self.row.copy(), slice(2 * self.curve.K, 2 * self.curve.K + 2), np.abs(place.p[:2])
+        row[own] *= np.minimum(1.0, self.curve.unit / np.where(p > 0, p, self.curve.unit)) ** 2
+        return row
+
     def _point(self, share: float, seen: dict[float, Point], exact: bool) -> Point:
         near = min(seen, key=lambda other: abs(other - share))
         guess = self.curve.shifted(seen[near], self.a, self.b, share - near)
@@ -124,12 +131,4 @@ def error_of(
         said = p - p[middle] - np.outer(tests, rate)
         slope, mean = np.polyfit(BESIDE, said, 1)
         scatter = np.abs(said - np.outer(BESIDE, slope) - mean).max()
-    return float(max(TIMES * scatter, OF_TESTS * rounding_error(curve, point, _across(curve, point, secant.row))))
-
-
-def _across(curve: SolutionCurve, point: Point, row: np.ndarray) -> np.ndarray:
-    """The plane across the secant, with parameters in units of their size: in those of narrow bounds it would hold
-    them, and rounding of the equations would move the orbit alone, with which the test vanishes elsewhere."""
-    row, own, p = row.copy(), slice(2 * curve.K, 2 * curve.K + 2), np.abs(point.p[:2])
-    row[own] *= np.minimum(1.0, curve.unit[:2] / np.where(p > 0, p, curve.unit[:2])) ** 2
-    return row
+    return float(max(TIMES * scatter, OF_TESTS * rounding_error(curve, point, secant.across(point))))

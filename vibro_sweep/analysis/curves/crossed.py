@@ -68,7 +68,7 @@ def crossed(curve: SolutionCurve, a: Place, b: Place, impact: int) -> tuple[floa
     place.jumps[impact], place.tests[TEST.residual] = 0.0, 0.0
     if not (curve.take_numbers(place) and curve.run_task(EXAMINE, place)):
         return None
-    lost = np.abs(weights) @ [sensitivity(curve, one, secant.row) for one in places]
+    lost = np.abs(weights) @ [sensitivity(curve, one, secant.across(one)) for one in places]
     return zero, place, float(apart.max() + DIGITS * np.abs(p).max() + ROWS * lost)
 
 
