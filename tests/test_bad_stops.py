@@ -44,7 +44,8 @@ SCENES = {  # the scene, and what its message says
     ),
     "no law": (scene("offset: 0"), "system.R", "k_stop, of a compliant stop"),
     "a law of the left stop alone": (scene("k_stop_left: 3"), "system.R", "k_stop"),
-    "damping alone": (scene("c_stop: 1"), "system.R", "k_stop"),
+    "damping alone": (scene("c_stop: 1"), "system.c_stop", "belongs to a stop with k_stop"),
+    "preload alone": (scene("preload: 1"), "system.preload", "belongs to a stop with k_stop"),
     "damping negative": (scene(f"{SOFT}, c_stop: -1"), "system.c_stop", ">= 0"),
     "damping of a rigid stop": (scene("R: 0.8, c_stop: 1"), "system.c_stop", "belongs to a stop with k_stop"),
     "damping infinite": (scene(f"{SOFT}, c_stop: .inf"), "system.c_stop", "finite"),
@@ -57,6 +58,12 @@ SCENES = {  # the scene, and what its message says
     "left stiffness negative": (scene(f"{SOFT}, k_stop_left: -1"), "system.k_stop_left", "> 0"),
     "left stiffness without a left stop": (
         scene(f"{SOFT}, k_stop_left: 50, stops: right"), "system.k_stop_left", "there is no left stop",
+    ),
+    "left restitution without a left stop": (
+        one_mass(f"{SOFT}, R_left: 0.5, stops: right"), "system.R_left", "there is no left stop",
+    ),
+    "stiffness of a rigid stop swept": (
+        physical("R: 0.5", "\nsweep: {k_stop: {values: [1, 2]}}"), "sweep.k_stop", "left out where R is given",
     ),
     "left damping without a left stop": (
         one_mass(f"{SOFT}, c_stop_left: 5, stops: right"), "system.c_stop_left", "there is no left stop",

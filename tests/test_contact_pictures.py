@@ -147,6 +147,14 @@ def test_a_damper_from_zero_on_has_an_even_axis():
     assert ax.get_xscale() == "linear"
 
 
+def test_cells_of_a_plane_are_of_like_size_along_values_in_proportion():
+    values = [1, 10, 100, 1000]
+    plane = vs.sweep(system(), {"k_stop": values, "preload": [0, 0.1]}, transient=5, record=5)
+    ax = figure(plane).axes[0]
+    assert (ax.get_xscale(), ax.get_yscale()) == ("log", "linear")
+    assert ax.get_xlim() == pytest.approx((10**-0.5, 10**3.5))
+
+
 @pytest.mark.parametrize("kind", ["contacts", "energy"])
 def test_both_ways_have_names(kind):
     start = {"follow": "both"}

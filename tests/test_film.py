@@ -35,6 +35,15 @@ def test_a_frame_shows_the_masses_where_they_are(data):
     assert [dot.get_xdata()[0] for dot in shown.dots] == pytest.approx([0.0, float(there.trajectory_x1[0])])
 
 
+def test_of_two_starts_the_first_is_shown():
+    trajectory = {"periods": 2, "samples": 50}
+    both = vs.sweep(SYSTEM, {"b": [3.9, 4.0]}, start={"follow": "both"}, transient=20, record=5, trajectory=trajectory)
+    (first, _), _ = (shown := vs.plot(both, "film", at={"b": 4.0})).boxes
+    shown.show(0)
+    place = float(both.sel(b=4.0, start="up").trajectory_x1[0])
+    assert first.get_x() + first.get_width() / 2 == pytest.approx(place, abs=1e-12)
+
+
 @pytest.mark.parametrize("suffix", [".gif", ".mp4"])
 def test_files(data, tmp_path, few, suffix):
     """A file that nobody has changed is replaced; the suffix asks for a film."""

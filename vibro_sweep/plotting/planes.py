@@ -12,6 +12,7 @@ from matplotlib.ticker import MaxNLocator
 
 from vibro_sweep.model.observables import VARIABLES
 from vibro_sweep.plotting import decades, rests, strip
+from vibro_sweep.plotting.decades import along_axis, in_proportion
 from vibro_sweep.plotting.labels import arrange, legend_below, thin_ticks
 from vibro_sweep.plotting.regions import name_regions
 from vibro_sweep.plotting.relative import axis_label, check_relative
@@ -76,16 +77,18 @@ def plane(result: Result, overlay: Overlay | None = None):
     grid = fig.subplots(1, len(maps), sharex=True, sharey=True, squeeze=False)[0]
     (x_key, x), (y_key, y) = result.sweep.items()
     relative = result.options.relative
+    scales = ["log" if in_proportion(np.sort(values)) and not relative else "linear" for values in (x, y)]
     if relative:
         columns, rows = np.argsort(x), np.argsort(y)
         corners = _relative_corners(result, columns, rows)
     else:
         (columns, across), (rows, up) = _in_range(x, result.options.xlim), _in_range(y, result.options.ylim)
-        corners = across, up
+        corners = (across, up) if scales == ["linear", "linear"] else np.meshgrid(across, up)
     unit = result.unit(result.options.variable or "lyapunov")
     shown = [np.ma.masked_invalid(values[np.ix_(columns, rows)].T) for _, values in maps]
     for ax, (draw, _), values in zip(grid, maps, shown, strict=True):
         draw(ax, *corners, values, unit)
+        ax.set(xscale=scales[0], yscale=scales[1])
         if ax.get_subplotspec().is_last_row():
             ax.set_xlabel(axis_label(x_key, relative, result.unit(x_key)))
         if ax.get_subplotspec().is_first_col():
@@ -116,7 +119,8 @@ def _in_range(values, limits) -> tuple[np.ndarray, np.ndarray]:
     """The order (n,) in which values rise (a sweep may run downwards; an axis does not), and the borders (n + 1,) of
     their cells; of those between the limits of the picture, if there are any."""
     order = np.argsort(values)
-    borders = edges(values[order])
+    to, back = along_axis(values[order])
+    borders = back(edges(to(values[order])))
     low, high = limits or (-np.inf, np.inf)
     inside = np.flatnonzero((borders[1:] > low) & (borders[:-1] < high))
     if not len(inside):

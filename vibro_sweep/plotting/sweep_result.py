@@ -246,7 +246,7 @@ class Result:
         places = [place for place in places if all(place[axis] == i for axis, i in self._chosen.items())]
         return [
             Point((*place, start), place, self._label(place, start))
-            for place in _spread(places, most // len(starts))
+            for place in _spread(places, max(1, most // len(starts)))
             for start in starts
             if self.done[(*place, start)]
         ]

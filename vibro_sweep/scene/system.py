@@ -68,7 +68,7 @@ def system_of(form: Form, sweep, kind: str, masses: int) -> tuple[AnyOscillator 
             system = System.physical(**physical, tau=form.system.tau, stops=form.system.stops, **options)
             return system.replace(**first), []
         except ParameterError as error:
-            path = "system.physical" if error.key in physical else "system"
+            path = "sweep" if error.key in first else "system.physical" if error.key in physical else "system"
             return None, [problem(f"{path}.{error.key}", error.value, f"must be {error.allowed}")]
     axes = getattr(form, "sweep", None)  # scenes of branches have none
     swept = axes.model_fields_set.intersection(numbers) if axes else set()

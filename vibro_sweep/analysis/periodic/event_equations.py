@@ -66,10 +66,16 @@ class EventEquations:
         return stepper.at(task, self.planes, self.problem, self._path, self.place, row, self.workspace)
 
     def multipliers(self) -> np.ndarray:
-        """(n,) of the equations that were assembled last, by falling modulus."""
+        """(n,) of the equations that were assembled last, by falling modulus; at a graze one may be infinite."""
         last, n = self.workspace.work[0]["last"], self.n
-        ahead, behind = last[:, :n], last[:, 2 * n + 2 : 3 * n + 2]
-        values = np.linalg.eigvals(-self.problem.sigma * np.linalg.solve(ahead, behind)).astype(complex)
+        ahead, behind = last[:, :n], -self.problem.sigma * last[:, 2 * n + 2 : 3 * n + 2]
+        try:
+            values = np.linalg.eigvals(np.linalg.solve(ahead, behind)).astype(complex)
+        except np.linalg.LinAlgError:
+            from scipy.linalg import eigvals
+
+            over, under = eigvals(behind, ahead, homogeneous_eigvals=True)
+            values = np.divide(over, under, out=np.full(n, np.inf, complex), where=under != 0)
         return values[np.lexsort((-values.imag, -np.abs(values)))]
 
     def newton(self, starts, oscillators=()) -> tuple[np.ndarray, np.ndarray]:
