@@ -5,11 +5,11 @@ computes into memory and takes it out again (values.py); measures how long each 
 that is being compiled, and tells its listeners of each call and each pass; asks five questions of every part of a
 statement in which it looks for variables; finds the type of an operation and of an attribute anew wherever it stands,
 how its arguments are passed, and whether the function that writes it takes a line number; imports what makes a constant
-for each constant, and writes names in several steps; goes through a whole kernel
-for each variable that is assigned twice; writes out each statement and, at each pass, the types of the kernel; imports
-all that could be called, once for each kernel; searches for `with` and for dictionaries; asks LLVM for the size of a
-type as often as a variable has it; and prepares, for each operation, to catch warnings about it and to tell where an
-error has come from. (Errors still name their line; warnings go where all others go.)
+for each constant, and writes names in several steps; goes through a whole kernel for each variable that is assigned
+twice; writes out each statement and, at each pass, the types of the kernel; imports all that could be called, once for
+each kernel; searches for `with` and for dictionaries; asks LLVM for the size of a type as often as a variable has it;
+and prepares, for each operation, to catch warnings about it and to tell where an error has come from. (Errors still
+name their line; warnings go where all others go.)
 """
 
 import contextlib
