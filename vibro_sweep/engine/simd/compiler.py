@@ -151,6 +151,16 @@ class _Flags(Flags):
 _pipelines: list = []
 
 
+def _passes_needed(passes):
+    """The passes but those spared, and but the search for dead branches in what a spared one would have inlined."""
+    spared = False
+    for step, why in passes:
+        name = step.name()
+        if name not in SPARED and not (spared and name == "dead_branch_prune"):
+            yield step, why
+        spared = name in SPARED
+
+
 class WholeCompiler(Compiler):
     """The compiler of an exported kernel."""
 
@@ -171,7 +181,7 @@ class WholeCompiler(Compiler):
         """The passes, chosen once for all kernels."""
         if not _pipelines:
             [pipeline] = super().define_pipelines()
-            pipeline.passes = [(step, why) for step, why in pipeline.passes if step.name() not in SPARED]
+            pipeline.passes = list(_passes_needed(pipeline.passes))
             pipeline.finalize()
             _pipelines.append(pipeline)
         return _pipelines

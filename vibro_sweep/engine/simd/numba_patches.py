@@ -117,9 +117,12 @@ def _variables_in(self, parts):
             found.append(part)
         elif kind is list or kind is tuple or kind is dict:
             found += self._rec_list_vars(part)
-        elif isinstance(part, numba_ir.Inst):
+        elif kind not in NO_VARIABLES and isinstance(part, numba_ir.Inst):
             found += part.list_vars()
     return found
+
+
+NO_VARIABLES = frozenset({str, int, bool, type(None), numba_ir.Loc})
 
 
 def _constant(self, value):
@@ -206,7 +209,14 @@ INSTEAD = (
 
 @contextlib.contextmanager
 def patched() -> Iterator[None]:
-    """Apply the patches while numba's lock for compiling is held: only what this kernel calls compiles meanwhile."""
+    """Apply the patches while numba's lock for compiling is held: only what this kernel calls compiles meanwhile.
+
+    They stay for the kernels that it calls: each change of a class makes Python look up all of its attributes anew.
+    """
+    where, name, instead = INSTEAD[0]
+    if getattr(where, name) is instead:
+        yield
+        return
     before = [(where, name, getattr(where, name)) for where, name, _ in INSTEAD]
     for where, name, instead in INSTEAD:
         setattr(where, name, instead)

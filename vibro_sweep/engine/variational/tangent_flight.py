@@ -20,25 +20,26 @@ def only(i):
 
 
 @inline
-def join(t, who, j, c, s):
-    """Lengthen the collected flight by one in which mode j has these factors."""
-    a, b, flight = row(t.flight, 2 * j), row(t.flight, 2 * j + 1), t.flight
-    put(flight, 2 * j, select(who, a * c - row(t.square, j) * (b * s), a))
-    put(flight, 2 * j + 1, select(who, a * s + b * c, b))
+def joined(t, j, a, b, c, s):
+    """The two numbers of mode j in a flight with the numbers a, b that is followed by one with c, s."""
+    return a * c - row(t.square, j) * (b * s), a * s + b * c
 
 
 @jit
 def fly(t, who):
     """Lengthen the collected flight by `leap` and `part`."""
-    leap, series, u, size = t.leap, t.series, row(t.part, 0), len(t.growth)
+    flight, leap, series, u, size = t.flight, t.leap, t.series, row(t.part, 0), len(t.growth)
     last = size * (ORDER - 1)
     for j in range(len(t.scale)):
-        join(t, who, j, row(leap, 2 * j), row(leap, 2 * j + 1))
+        before, before_s = row(flight, 2 * j), row(flight, 2 * j + 1)
+        a, b = joined(t, j, before, before_s, row(leap, 2 * j), row(leap, 2 * j + 1))
         c, s = row(series, last + 2 * j), row(series, last + 2 * j + 1)
         for n in range(last - size, -1, -size):
             c = c * u + row(series, n + 2 * j)
             s = s * u + row(series, n + 2 * j + 1)
-        join(t, who, j, c, s)
+        a, b = joined(t, j, a, b, c, s)
+        put(flight, 2 * j, select(who, a, before))
+        put(flight, 2 * j + 1, select(who, b, before_s))
 
 
 @inline
