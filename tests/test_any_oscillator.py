@@ -15,7 +15,7 @@ from vibro_sweep.engine.period_map import PeriodMap
 from vibro_sweep.model.parameters import NAMES
 
 # Each number of masses compiles kernels of its own; those of three with a constant force serve other tests, too.
-FAST, SLOW = (3,), (1, 2, 5, 8)
+FAST, SLOW = (2,), (1, 3, 5, 8)
 SMALL = slow_cases(1, 2, 3)
 COUNT = 30  # impacts compared
 

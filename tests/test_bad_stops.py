@@ -162,7 +162,7 @@ CALLS = {
     "sweep that observes nothing": (
         lambda: vs.sweep(soft(), {"b": [5]}, transient=1, record=1, observe=["touches"]), "observe",
     ),
-    "simulate behind a rigid stop": (lambda: vs.simulate(soft().replace(R_left=0.5), (-9, 0, 0, 0), 1), "behind"),
+    "simulate behind a rigid stop": (lambda: vs.simulate(ball(k_stop=100, R_left=0.5), (-9, 0), 1), "behind"),
     "basins behind a rigid stop": (
         lambda: vs.sweep(
             soft().replace(R_left=0.5), {"x1": [-9, 0], "v1": [0, 1]}, transient=1, record=1, observe=["attractors"]

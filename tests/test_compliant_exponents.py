@@ -84,7 +84,7 @@ def test_exponents_with_stops_that_are_touched_while_they_relax(count):
     assert sum(one.period > 0 and one.relaxing > 0 for one in reports) >= count // 2
 
 
-@pytest.mark.parametrize("seeds", [(0, 1), *slow_cases(range(2, 16))])
+@pytest.mark.parametrize("seeds", [(1,), *slow_cases([0, *range(2, 16)])])
 def test_sums_of_exponents(seeds):
     """As they are stored, and as the share of contact and the impacts of the file give them."""
     for report in map(compliant_sums.summed, seeds):

@@ -8,7 +8,6 @@ from mpmath import mp, mpf
 from reference import compliant
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
-from support import slow_cases
 
 import vibro_sweep as vs
 from vibro_sweep.scene import SceneError, parse_scene
@@ -81,8 +80,9 @@ def test_restitution_in_a_plane_of_clearance_and_damping(stiffness, release):
     np.testing.assert_allclose(data.restitution_mean, np.tile(expected, (7, 1)), rtol=1e-12)
 
 
-@pytest.mark.parametrize("z", [0.07, *slow_cases(0.01, 0.3)])
-@pytest.mark.parametrize("b", [3, *slow_cases(1, 2, 4)])
+@pytest.mark.slow
+@pytest.mark.parametrize("z", [0.01, 0.07, 0.3])
+@pytest.mark.parametrize("b", [1, 2, 3, 4])
 def test_stiff_stops_come_near_to_rigid_ones(b, z):
     """At a fixed z orbits differ from those with the restitution exp(-pi z/sqrt(1 - z^2)) like k^(-1/2)."""
     start, stiffness = (0.4 * b, 2.0, 0.5, 0.0), np.logspace(5, 9, 9)
@@ -126,6 +126,7 @@ def test_order_of_what_a_grazing_touch_does(order, stop):
     assert fitted_order(order, change) == pytest.approx(order, abs=0.02)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("order, stop", ORDERS)
 def test_order_of_what_a_grazing_touch_of_two_masses_does(order, stop):
     """The free motion under the force turns back at a known place, and the stop is so far before it."""
@@ -167,6 +168,7 @@ def test_multipliers_against_differences_in_forty_digits(stop):
         assert np.abs(exact - one).min() < 1e-9 * np.abs(exact).max()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("release", ["displacement", "force"])
 @pytest.mark.parametrize("b", [3.0, 5.0, 6.4])
 def test_sum_rule(release, b):
@@ -185,6 +187,7 @@ def test_the_fastest_direction_is_not_lost_in_a_long_contact():
     assert abs(exponents.residual) < 1e-11 and exponents[1] < -c * 0.3
 
 
+@pytest.mark.slow
 def test_one_rigid_and_one_compliant_stop_have_a_sum_rule():
     system = vs.System(**PAPER, b=3, R=0.8, k_stop_left=100, c_stop_left=2)
     orbit = vs.simulate(system, (0, 0, 0, 0), 200)
@@ -216,6 +219,7 @@ def test_what_a_sweep_observes_is_what_an_orbit_has():
         assert 0 < float(data.contact_time[i]) < 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ratio", [0.0, 0.3])
 def test_a_sweep_has_the_largest_force_and_penetration_to_rounding(ratio):
     """Orbits side by side find peaks in closed form, single orbits in series of their own."""
@@ -281,6 +285,7 @@ def test_exponents_do_not_depend_on_where_the_section_is():
         assert exponents == pytest.approx([-0.01, -0.01], abs=1e-12)
 
 
+@pytest.mark.slow
 def test_bits_do_not_depend_on_workers_or_on_other_points():
     system, axes = vs.System(**PAPER, b=4, k_stop=1e3, c_stop=2), {"b": np.linspace(3, 7, 40)}
     how = dict(transient=50, record=30, observe=["section", "lyapunov", "contacts"])

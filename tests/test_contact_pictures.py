@@ -65,6 +65,7 @@ def test_a_loop_has_the_force_of_the_file(data):
         assert np.min(gap[np.isfinite(force)]) == pytest.approx(1, abs=1e-3)  # where the stop is
 
 
+@pytest.mark.slow  # as all that has energies with compliant stops
 @pytest.mark.parametrize("periodic", [False, True])
 def test_a_loop_of_an_orbit_has_the_area_that_the_stop_takes(periodic):
     """The work on the stop by `observe: [energy]`, in a period."""
@@ -155,6 +156,7 @@ def test_cells_of_a_plane_are_of_like_size_along_values_in_proportion():
     assert ax.get_xlim() == pytest.approx((10**-0.5, 10**3.5))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["contacts", "energy"])
 def test_both_ways_have_names(kind):
     start = {"follow": "both"}

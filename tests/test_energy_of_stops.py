@@ -24,6 +24,8 @@ LAWS = {
 }
 PERIODS = 6
 
+pytestmark = pytest.mark.slow  # for this alone the kernel of energies would be compiled with compliant stops
+
 
 def oscillator(masses, law):
     if masses == 2:

@@ -74,11 +74,12 @@ start: {follow: both}
 orbit: {transient: 0, record: 60}
 observe: [section, lyapunov, impacts]"""
 MORE = {"failing": (FAILING,), "hasty": (HASTY,)}
+AGAIN = "compliant, follow", "compliant, force"
 
 
 @pytest.mark.parametrize(
     "name",
-    [*(name for name in SCENES if name != "attractors"), *MORE, "compliant, follow", *slow_cases("compliant, force")],
+    [*(name for name in SCENES if name != "attractors"), *MORE, "compliant", *slow_cases(*AGAIN)],
 )
 def test_parts_of_points_and_chains_give_the_same_bits(name, monkeypatch):
     def too_stiff(*given):

@@ -19,7 +19,7 @@ from vibro_sweep.driver.attractor_ids import number_attractors
 from vibro_sweep.driver.drawn_starts import starts_of
 from vibro_sweep.scene import parse_scene
 
-SMALL = ("random", "follow", "attractors", "basins", "compliant, follow")
+SMALL = ("random", "follow", "attractors", "basins", "compliant")
 
 
 @pytest.mark.parametrize(
@@ -28,8 +28,8 @@ SMALL = ("random", "follow", "attractors", "basins", "compliant, follow")
         "random",
         "follow",
         "attractors",
-        "compliant, follow",
-        *slow_cases("plane", "basins", "compliant", "compliant, force"),
+        "compliant",
+        *slow_cases("plane", "basins", "compliant, follow", "compliant, force"),
     ],
 )
 def test_workers_do_not_matter(tmp_path, name):

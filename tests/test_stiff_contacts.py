@@ -171,9 +171,10 @@ def test_the_comparison_counts_a_graze_only_where_the_data_decide_it(share, coun
     assert "defect" not in judged(passed, [0] * 4, without_graze, 1)
 
 
+@pytest.mark.slow
 def test_a_few_oscillators():
     """Among them those whose stiff masses carry most of the force, and those with far stops; all of three masses with a
-    constant force, as other tests have them, and so with the same kernels."""
+    constant force, and so with the same kernels."""
     hold([compared(seed) for seed in (0, 15, 47)])
 
 
