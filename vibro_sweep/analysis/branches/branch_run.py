@@ -14,13 +14,14 @@ from vibro_sweep.analysis.branches.looking import hidden_between
 from vibro_sweep.analysis.branches.own_birth import before_birth, lands_on_birth, own_birth
 from vibro_sweep.analysis.branches.passed_births import before_passed, how_many_on, passed
 from vibro_sweep.analysis.branches.permanent_contact import permanent_contact
-from vibro_sweep.analysis.branches.special import SpecialPoint, graze_at, is_smooth, vanishing
+from vibro_sweep.analysis.branches.special import SpecialPoint, graze_at, vanishing
 from vibro_sweep.analysis.branches.split_contacts import joined_contacts
 from vibro_sweep.analysis.continuation.events import Event, LocatedEvent
 from vibro_sweep.analysis.continuation.point import Point, along
 from vibro_sweep.analysis.continuation.recorded import Rows, join
 from vibro_sweep.analysis.continuation.solution_curve import SHORTEST_STEP, SolutionCurve
 from vibro_sweep.analysis.continuation.starting_orbit import KINDS
+from vibro_sweep.analysis.periodic.contact_numbers import is_smooth
 from vibro_sweep.analysis.periodic.periodic_orbit import orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation import stepper
@@ -191,6 +192,9 @@ class BranchRun:
         """`_pass`, in as many parts as it takes until tests at their ends tell what lies in them."""
         ends = ends_between(self.curve, self.bounds, a, b)
         end = first_end(self.curve, ends, a, b)
+        if end and not self.bounds[0] <= end.place.value <= self.bounds[1]:  # where it turns: b is within them again
+            b = end.place
+            end = first_end(self.curve, ends_between(self.curve, self.bounds, a, b), a, b) or end
         if ends and end is None:  # what follows is not a motion
             if not self._press_for_good(self._last_solution()):
                 self.special.append(self._at("failed", a, math.nan))
@@ -235,6 +239,7 @@ class BranchRun:
 
     def _forget_beside(self, value: float, error: float) -> None:
         """Take back bifurcations that rounding does not tell from the graze: multipliers of free modes are 1 there."""
+        error = error if math.isfinite(error) else 0.0
         while self.special and abs(self.special[-1].parameters[self.name] - value) <= self.special[-1].error + error:
             self.special.pop()
 

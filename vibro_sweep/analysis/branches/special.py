@@ -7,13 +7,12 @@ import numpy as np
 
 from vibro_sweep.analysis.branches import branch_text
 from vibro_sweep.analysis.continuation.chatter import Chatter
-from vibro_sweep.analysis.periodic.contact_numbers import one_plus_R
+from vibro_sweep.analysis.periodic.contact_numbers import is_smooth, one_plus_R
 from vibro_sweep.analysis.periodic.linearised import Linearised
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses import flights
 from vibro_sweep.engine.impulses.flow import flow
-from vibro_sweep.model.linear import Linear
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -115,20 +114,9 @@ def graze_at(solution: Solution, name: str, impact: int | None) -> Graze:
         # and where it ends by force the damper adds to the motion what is proportional to that distance
         begun = Linearised(touching, solution.family.derivative(name), gone, index)
         speed_slope = math.copysign(np.inf, -begun.distance_slope(index))
-        return Graze(without, touching, index, distance_slope, speed_slope, begun.equations.multipliers())
+        return Graze(without, touching, index, distance_slope, speed_slope, begun.multipliers())
     speed_slope = -side * slopes(touching, name)[touching.K + index] / one_plus_R(q, [side])[0]
     return Graze(without, touching, index, distance_slope, float(speed_slope))
-
-
-def is_smooth(q: Linear, side: int) -> bool:
-    """Whether a contact with this stop begins like the square root of what passes the stop: orbits go on through its
-    graze, or turn back where it ends by force."""
-    return bool(q.is_compliant(side)) and (q.p_high if side > 0 else q.p_low) == 0
-
-
-def has_corner(q: Linear, side: int) -> bool:
-    """Whether multipliers jump at the graze of a contact with this stop, by its damper."""
-    return q.by_force and is_smooth(q, side) and (q.c_high if side > 0 else q.c_low) > 0
 
 
 def inserted(solution: Solution, slow=()) -> tuple[Solution, int]:

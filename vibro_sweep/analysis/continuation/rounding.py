@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 
 DIGITS = 8 * np.finfo(float).eps  # of the parameters themselves
 ROWS = 2 * np.finfo(float).eps  # of the size of each row
+BESIDE = 2.0**-45  # of phases: so near to a graze the equations of its contact, in part dependent there, tell the same
 
 
 def rounding_error(curve: "SolutionCurve", place: Place, row: np.ndarray) -> float:
@@ -22,9 +23,12 @@ def rounding_error(curve: "SolutionCurve", place: Place, row: np.ndarray) -> flo
 
 def sensitivity(curve: "SolutionCurve", place: Place, row: np.ndarray) -> float:
     """The change of the parameters, on the plane across `row`, if each equation is off by its own size; infinite
-    where they are singular."""
+    where they are singular, and beside it, too."""
     if not curve.assemble(place, row):
-        return np.inf
+        place = curve.copied(place)
+        place.phases[:] += BESIDE
+        if not curve.assemble(place, row):
+            return np.inf
     c, n, work, events = curve.problem, curve.n, curve.workspace.work[0], curve.workspace.events
     free, found = unknowns(c), []
     try:

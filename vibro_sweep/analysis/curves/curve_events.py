@@ -4,12 +4,12 @@ import math
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.special import has_corner, is_smooth
 from vibro_sweep.analysis.continuation.events import Event, LocatedEvent
 from vibro_sweep.analysis.continuation.secant import error_of, root
 from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve
 from vibro_sweep.analysis.continuation.starting_orbit import CONDITIONS
 from vibro_sweep.analysis.curves.crossed import aside, crossed, is_lost, is_on_other
+from vibro_sweep.analysis.periodic.contact_numbers import has_corner, is_smooth
 from vibro_sweep.engine.continuation.curve_tests import TOUCHING
 from vibro_sweep.engine.continuation.problem import GRAZE, TORUS
 from vibro_sweep.engine.continuation.workspace import CURVE_TESTS, NAMES, TEST, THETA, Place

@@ -48,3 +48,14 @@ def one_plus_R(q: Linear, sides) -> np.ndarray:
 def which_press(q: Linear) -> np.ndarray | None:
     """(2,) whether the left and the right stop are compliant; None where both are rigid."""
     return np.array([q.k_low > 0, q.k_high > 0]) if q.compliant else None
+
+
+def is_smooth(q: Linear, side: int) -> bool:
+    """Whether a contact with this stop begins like the square root of what passes the stop: orbits go on through its
+    graze, or turn back where it ends by force."""
+    return bool(q.is_compliant(side)) and (q.p_high if side > 0 else q.p_low) == 0
+
+
+def has_corner(q: Linear, side: int) -> bool:
+    """Whether multipliers jump at the graze of a contact with this stop, by its damper."""
+    return q.by_force and is_smooth(q, side) and (q.c_high if side > 0 else q.c_low) > 0

@@ -57,6 +57,11 @@ class Linearised:
             raise np.linalg.LinAlgError("the equations are singular")
         return self.equations.workspace.work[0]
 
+    def multipliers(self) -> np.ndarray:
+        """(n,) of the map over P, by falling modulus. LinAlgError where the equations are singular."""
+        self._assembled()
+        return self.equations.multipliers()
+
     def tangent(self) -> np.ndarray:
         """(K, n + 2) change of the orbit with the number. LinAlgError at a fold.
 

@@ -8,10 +8,11 @@ from operator import attrgetter
 
 import numpy as np
 
-from vibro_sweep.analysis.periodic.contact_numbers import one_plus_R
+from vibro_sweep.analysis.periodic.contact_numbers import is_smooth, one_plus_R
 from vibro_sweep.analysis.periodic.event_equations import EventEquations
 from vibro_sweep.analysis.periodic.itinerary import is_mirrored, repetitions
-from vibro_sweep.analysis.periodic.joined_contacts import without_flights
+from vibro_sweep.analysis.periodic.joined_contacts import ROUNDING, without_flights
+from vibro_sweep.analysis.periodic.linearised import Linearised
 from vibro_sweep.analysis.periodic.motion_between import contacts_of, fly, multipliers_of
 from vibro_sweep.analysis.periodic.resting_orbit import RestingOrbit
 from vibro_sweep.analysis.periodic.steady_gap import steady_gap
@@ -97,6 +98,16 @@ class Solution:
         """This orbit, without a flight of no length between two contacts, at which its equations are singular."""
         return without_flights(self)
 
+    @property
+    def _only_touched(self) -> list[int]:
+        """Contacts of no length with stops at which they begin smoothly: their own equations are singular there."""
+        q, lengths = self.family.linear, self.ends - self.times[list(self.rests)]
+        return [
+            i
+            for i, length in zip(self.rests, lengths, strict=True)
+            if length <= ROUNDING * self.P and is_smooth(q, self.sides[i])
+        ]
+
     @cached_property
     def _flights(self):
         if self.rests:
@@ -121,6 +132,8 @@ class Solution:
     @cached_property
     def multipliers(self) -> np.ndarray:
         """Multipliers of the map over P, with the mirror for sigma = -1."""
+        if touches := self._only_touched:
+            return Linearised(self, watched=touches, corner=touches[0]).multipliers()
         if self.rests:
             return self._regular.resting.multipliers()
         q = self.family.linear
