@@ -65,6 +65,21 @@ def unexplained(branch) -> list[str]:
     return found
 
 
+def within(bounds, special, name: str) -> bool:
+    """Whether a special point lies within the bounds of its branch."""
+    return bounds[0] <= special.parameters[name] <= bounds[1]
+
+
+def apart_at_ends(branch) -> list[str]:
+    """Ends at whose last point the branch has other multipliers than the end itself."""
+    mu, found = branch.points.multiplier_re.values + 1j * branch.points.multiplier_im.values, []
+    for one, there in ((branch.begins, mu[0]), (branch.ends, mu[-1])):
+        of_end = np.sort(np.abs(one.multipliers)) ** (2 if one.orbit.symmetric else 1)
+        if one.type in ("boundary", "graze") and not np.allclose(np.sort(np.abs(there)), of_end, rtol=1e-6, atol=1e-9):
+            found.append(f"{one.type} at {one.parameters}: multipliers {there}, and {one.multipliers}")
+    return found
+
+
 def other_starts(branch, case: Case, rng, most=3):
     """(words, orbit) at points of the branch."""
     arrays = arrays_of(branch, case.orbit._solution.family.numbers[case.name])
@@ -87,7 +102,8 @@ def study(seed: int) -> tuple[collections.Counter, list[str]]:
         return counted + collections.Counter(too_long=1), wrong
     counted.update(branches=1, points=branch.points.sizes["point"])
     counted.update(one.type for one in branch.special)
-    wrong += unexplained(branch)
+    wrong += unexplained(branch) + apart_at_ends(branch)
+    wrong += [f"{one.type} at {one.parameters}" for one in branch.special if not within(case.bounds, one, case.name)]
     wrong += [f"failed at {one.parameters}" for one in branch.special if one.type == "failed"]
     wrong += [f"{one.type} at {one.parameters}: error {one.error:.1e}" for one in branch.special if one.error > 1e-9]
     runs = [(f"steps times {factor}", case.orbit, factor) for factor in (0.5, 2.0)]
