@@ -194,3 +194,46 @@ def test_files_hold_them(tmp_path):
     assert [one.type for one in read.special] == [one.type for one in branch.special]
     assert read.special[0].orbit.state == pytest.approx(branch.special[0].orbit.state, abs=1e-9)
     assert branch.plot() is not None and orbit.plot() is not None
+
+
+SHORT = [
+    dict(k_stop=2),
+    dict(k_stop=29),
+    dict(k_stop=29, c_stop=0.4),
+    dict(k_stop=29, c_stop=0.4, release="force"),
+    dict(k_stop=1e4),
+]
+
+
+@pytest.mark.parametrize("law", SHORT)
+@pytest.mark.parametrize("depth", [0.1, 0.02, 1e-3, 1e-5])
+def test_orbits_with_short_contacts_are_found(law, depth):
+    """Next to the graze of the free motion, where those with rigid stops lead nowhere: the one that its branch has."""
+    system = vs.Oscillator.named("one_mass", zeta=0.05, F=0.5, omega=0.9, b=0.6, stops="right", tau=0, **law)
+    b = float(vs.grazing(system).b_right) - depth
+    orbit = vs.periodic_orbit(system.replace(b=b), itinerary="R")
+    assert orbit.ok
+    known = vs.continue_orbit(vs.periodic_orbit(system, itinerary="R"), "b", (0.5, b)).ends
+    assert known.type == "boundary"
+    np.testing.assert_allclose(orbit.contacts["t_touch"], known.orbit.contacts["t_touch"], rtol=0, atol=1e-11)
+    np.testing.assert_allclose(orbit.multipliers, known.multipliers, rtol=0, atol=1e-9)
+
+
+@pytest.mark.slow
+def test_orbits_that_attract_are_found_by_their_contacts():
+    """Random oscillators, at clearances from just below the graze to a third of it."""
+    rng, found, missed = np.random.default_rng(7), 0, []
+    while found + len(missed) < 60:
+        k, z = 10 ** rng.uniform(0.3, 4), rng.choice([0.0, 0.05, 0.3])
+        system = vs.Oscillator.named(
+            "one_mass", zeta=0.05, F=0.5, omega=rng.uniform(0.4, 2), tau=rng.uniform(0, 6), b=1.0, k_stop=k,
+            c_stop=2 * z * np.sqrt(k), release=str(rng.choice(["displacement", "force"])), stops="right",
+        )  # fmt: skip
+        b = float(vs.grazing(system).b_right) * rng.choice([0.999, 0.99, 0.95, 0.9, 0.7, 0.5, 0.3])
+        system = system.replace(b=b)
+        orbit = vs.periodic_orbit(system, state=vs.simulate(system, [0, 0], 600).section[-1], periods=1)
+        if orbit.ok and orbit.stable and orbit.itinerary == "R":
+            again = vs.periodic_orbit(system, itinerary="R")
+            found += again.ok
+            missed += [] if again.ok else [system]
+    assert not missed

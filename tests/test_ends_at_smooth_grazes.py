@@ -1,4 +1,4 @@
-"""Ends of branches at which the contact with an elastic or damped stop vanishes: its own equations are singular there."""
+"""Ends of branches at which the contact with an elastic stop vanishes: its own equations are singular there."""
 
 import numpy as np
 import pytest

@@ -3,6 +3,7 @@
 The unknowns are the times and impulses of the impacts, so that nothing is singular at a graze.
 """
 
+from collections.abc import Iterator
 from itertools import pairwise
 
 import numpy as np
@@ -12,6 +13,7 @@ from vibro_sweep.analysis.periodic.event_equations import EventEquations
 from vibro_sweep.analysis.periodic.itinerary import SIDES, is_mirrored, repetitions, word
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit, found_orbit, leans, orbit_of
 from vibro_sweep.analysis.periodic.seeds_of_contacts import contact_seeds, with_contacts
+from vibro_sweep.analysis.periodic.seeds_of_free_motion import from_free_motion
 from vibro_sweep.analysis.periodic.seeds_of_rests import evenly, with_rests
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.analysis.periodic.steady_gap import push_of_free_mode, steady_gap
@@ -178,7 +180,7 @@ def _from_itinerary(system, family, sides, periods) -> PeriodicOrbit:
     virtual = None
     kinds = [Solution(family, *kind, np.empty(0)) for kind in [*kinds, (1, 2 * periods, sides)]]
     for start in kinds:
-        for found in contact_seeds(start, _seeded) if family.linear.compliant else _seeded(start):
+        for found in _with_contacts(start) if family.linear.compliant else _seeded(start):
             if virtual is not None and ((not found.rests and _passes_a_stop(found)) or not found.real):
                 continue
             found = found.reduced()
@@ -194,6 +196,13 @@ def _from_itinerary(system, family, sides, periods) -> PeriodicOrbit:
                 if found is not None and len(found.reduced().whole().sides) == len(sides):
                     return found_orbit(system, found)
     return found_orbit(system, virtual)
+
+
+def _with_contacts(start: Solution) -> Iterator[Solution]:
+    """Orbits of an oscillator with compliant stops: from rigid ones, and that with the contacts of the free motion."""
+    yield from contact_seeds(start, _seeded)
+    if (found := from_free_motion(start)) is not None:
+        yield found
 
 
 def _passes_a_stop(s: Solution) -> bool:

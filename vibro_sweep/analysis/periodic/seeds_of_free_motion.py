@@ -1,0 +1,66 @@
+"""A guess of the orbit with short contacts, from the free motion: the stops move in from where it grazes them.
+
+The gap's free motion is mean + A cos(omega t + psi). A stop at h is met where that cosine is (h - mean)/A = cos alpha,
+alpha before the turning point, with the speed A omega sin alpha; by a weak stop it is left alpha after that.
+"""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from vibro_sweep.analysis.periodic.contact_numbers import one_plus_R
+from vibro_sweep.analysis.periodic.seeds_of_contacts import of_free_mass
+from vibro_sweep.analysis.periodic.solution import Solution
+from vibro_sweep.analysis.periodic.steady_gap import steady_gap
+from vibro_sweep.engine.impulses.free_modes import has_free_gap
+from vibro_sweep.model.linear import Family, Linear
+
+DEPTHS = 4.0 ** np.arange(-5, 1)  # of what the free motion passes a stop by
+SHORTEST = 1e-9  # of its amplitude
+
+
+def from_free_motion(start: Solution) -> Solution | None:
+    """The orbit with the contacts of `start` that the free motion would have; None where it has others, or none."""
+    q = start.family.linear
+    if has_free_gap(q):
+        return None
+    mean, swing = steady_gap(q)
+    passed = {side: abs(swing) - side * (float(q.stop(side)) - mean) for side in {*start.sides}}
+    if min(passed.values()) <= SHORTEST * abs(swing):
+        return None
+    one = None
+    for share in DEPTHS:
+        high, low = ((1 - share) * passed.get(side, 0.0) for side in (1, -1))
+        there = q._replace(high=q.high + high, low=q.low - low)
+        family = start.family if share == 1 else Family(lambda there=there: there, {})
+        guess = replace(one, family=family) if one else _touching(replace(start, family=family))
+        one = guess and guess.corrected()
+        if one is None:
+            return None
+    return one
+
+
+def _touching(start: Solution) -> Solution | None:
+    """The free motion with a contact, or an impact, wherever it passes a stop."""
+    q, K = start.family.linear, start.K
+    mean, swing = steady_gap(q)
+    angle = {side: math.acos(max(-1.0, side * (float(q.stop(side)) - mean) / abs(swing))) for side in {*start.sides}}
+    turns = [(side, turn) for side in angle for turn in range(start.half_periods + 2)]
+    events = sorted((_time(q, swing, side, angle[side]) + turn * 2 * math.pi / q.omega, side) for side, turn in turns)
+    for first in range(len(events) - K):
+        window = events[first : first + K]
+        times, sides = np.array([t for t, _ in window]), tuple(side for _, side in window)
+        if sides != start.sides or abs(events[first + K][0] - times[0] - start.P) > 1e-9 * start.P:
+            continue
+        speeds = [side * abs(swing) * q.omega * math.sin(angle[side]) for side in sides]
+        rests = tuple(np.flatnonzero(q.is_compliant(np.array(sides))).tolist())
+        ends = [times[k] + min(2 * angle[sides[k]] / q.omega, of_free_mass(q, sides[k])[1]) for k in rests]
+        u = np.concatenate([times, -one_plus_R(q, sides) * speeds, ends])
+        return replace(start, u=u, rests=rests)
+    return None
+
+
+def _time(q: Linear, swing: complex, side: int, angle: float) -> float:
+    """When the free motion meets the stop on this side."""
+    return float(((0.0 if side > 0 else math.pi) - angle - np.angle(swing) - q.tau) / q.omega)
