@@ -48,7 +48,8 @@ def events_between(curve: SolutionCurve, a: Place, b: Place) -> list[Event]:
             size = max(abs(a.tests[i]), abs(b.tests[i]))
             events.append(Event(type_at(curve, i), lambda place, i=i, size=size: place.tests[i] / size, i))
     for i in range(curve.K):
-        if a.jumps[i] * b.jumps[i] < 0 and not (kind >= GRAZE and i == curve.problem.index):
+        changes = a.jumps[i] * b.jumps[i] < 0 and max(abs(a.jumps[i]), abs(b.jumps[i])) > VANISHED  # else it never was
+        if changes and not (kind >= GRAZE and i == curve.problem.index):
             stop = curve.orbit.family.linear, int(curve.problem.sides[i])
             smooth = is_smooth(*stop) and not has_corner(*stop)  # multipliers are those without it
             name = type_at(curve, TOUCHES if smooth else VANISHES)
