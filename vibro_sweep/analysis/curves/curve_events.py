@@ -90,7 +90,9 @@ def found_between(curve: SolutionCurve, a: Place, b: Place) -> list[LocatedEvent
     for i in range(len(cuts) - 1):
         for one in _located(curve, places[i], places[i + 1]):
             result.append(one._replace(share=cuts[i] + one.share * (cuts[i + 1] - cuts[i])))
-    return result
+    # an impulse has no pole: where a piece is too short to locate its zero, that of the whole step holds
+    seen = [one.event.impact for one in result]
+    return result + [one for one in found if one.event.impact is not None and one.event.impact not in seen]
 
 
 def found_to_edge(curve: SolutionCurve, a: Place, b: Place) -> list[LocatedEvent]:
