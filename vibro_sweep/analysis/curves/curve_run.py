@@ -21,6 +21,7 @@ from vibro_sweep.analysis.curves.curve_events import (
     without_echoes,
 )
 from vibro_sweep.analysis.curves.ends import End, birth, birth_near, in_full, just_before, strong_resonance
+from vibro_sweep.analysis.curves.vanishing_preload import without_preload
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit, orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation import stepper
@@ -123,7 +124,7 @@ class CurveRun:
         end = birth_near(w, a) if w.problem.repeats or w.problem.mirrors else None
         if end is not None:
             self._end(end)
-        elif not self._join_contacts(a):
+        elif not (self._join_contacts(a) or self._lose_preload(a)):
             self.special.append(self._at("failed", a, np.nan))
 
     def _write_out(self, a: Place) -> bool:
@@ -200,7 +201,8 @@ class CurveRun:
         passed = [(j, boundary) for j, boundary, side in sides if (b.p[j] - boundary) * side > 0]
         found = [place for j, boundary in passed if (place := self._at_boundary(a, b, j, boundary)) is not None]
         if not found:
-            self.special.append(self._at("failed", a, np.nan))
+            if not self._lose_preload(a):
+                self.special.append(self._at("failed", a, np.nan))
             return
         place = min(found, key=lambda one: max((one.p[j] - boundary) * side for j, boundary, side in sides))
         if not self._ends(a, place, False) and self._pass(a, place):
@@ -254,6 +256,15 @@ class CurveRun:
         self._add_solution(place.p.copy(), both)
         point = self._at("split", place, error, event, place.curve)
         self.special.append(replace(point, orbit=orbit_of(point.orbit.system, both)))
+        return True
+
+    def _lose_preload(self, a: Place) -> bool:
+        """End where a contact beside a vanishes together with the preload of its stop. False: there is none."""
+        place = without_preload(self.curve, self.curve.solution(a), a.p)
+        if place is None:
+            return False
+        self._add_solution(np.append(place.p[:2], a.p[THETA]), place.solution)
+        self.special.append(self._at("boundary", place, 0.0, curve=place.curve))
         return True
 
     def _add_solution(self, p: np.ndarray, s: Solution) -> None:

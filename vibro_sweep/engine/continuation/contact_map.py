@@ -28,7 +28,7 @@ def ends_by_force(f, side, speed):
     """Whether a contact that ends with this gap velocity ends where the force is 0, before the gap is at its stop."""
     law = law_at(f, side)
     c, p = f.values[law + 1], f.values[law + 2]
-    return f.by_force > 0 and ((p == 0.0 and c != 0.0) or side * c * speed + p < 0.0)
+    return f.by_force > 0 and c != 0.0 and (p == 0.0 or side * c * speed + p < 0.0)
 
 
 @jit
