@@ -239,7 +239,7 @@ class BranchRun:
 
     def _forget_beside(self, value: float, error: float) -> None:
         """Take back bifurcations that rounding does not tell from the graze: multipliers of free modes are 1 there."""
-        error = error if math.isfinite(error) else 0.0
+        error = error if math.isfinite(error) else 0.0  # of singular equations: it does not tell which are near
         while self.special and abs(self.special[-1].parameters[self.name] - value) <= self.special[-1].error + error:
             self.special.pop()
 

@@ -27,13 +27,12 @@ def without_preload(curve: SolutionCurve, solution: Solution, p: np.ndarray) -> 
     lengths = (solution.ends - solution.times[list(solution.rests)]) * solution.family.linear.omega
     if not axes or not len(lengths) or lengths.min() > SHORT:
         return None
-    try:
-        gone = bare(solution, solution.rests[int(np.argmin(lengths))])
-        gone = replace(gone, family=gone.family.replace(**{curve.names[axes[0]]: 0.0})).corrected()
-        touching, index = inserted(gone)
-        graze = SolutionCurve(Start("graze", touching, index), curve.names, curve.bounds)
-    except (AttributeError, np.linalg.LinAlgError, ValueError):  # no such orbit, or none that may graze
+    gone = bare(solution, solution.rests[int(np.argmin(lengths))])
+    orbit = replace(gone, family=gone.family.replace(**{curve.names[axes[0]]: 0.0})).corrected()
+    if orbit is None:
         return None
+    touching, index = inserted(orbit)
+    graze = SolutionCurve(Start("graze", touching, index), curve.names, curve.bounds)
     found = first_place(graze, graze.axis(axes[0]))
     near = found is not None and np.all(np.abs(found.p - p)[:2] <= NEAR * np.ptp(curve.bounds, axis=1))
     return found if near else None
