@@ -15,6 +15,7 @@ from vibro_sweep.engine.point_tables import to_masses
 from vibro_sweep.engine.simd.jit import inline, jit, noinline
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.simd.memory import put
+from vibro_sweep.engine.variational.growth import excess_of_record
 from vibro_sweep.engine.variational.multiplier_groups import BESIDE
 from vibro_sweep.engine.variational.multipliers import begin_period, read_period
 from vibro_sweep.engine.variational.spectrum import (
@@ -143,6 +144,7 @@ def keep_record(e, w, plan, point, result, section, phase, running, o):
         for j in range(numbers):
             running[n, j] = growth[n, j] / (periods_read(n, len(running), plan.record) * T)
     if plan.lyapunov:
+        w.multipliers[o.lane].excess = excess_of_record(e.tangent[0], o.lane)
         time_average(growth, plan.record, plan.warm_up, T, result.lyapunov, result.lyapunov_error)
 
 

@@ -49,6 +49,7 @@ def law_of(masses: int) -> np.dtype:
         ("preload", float, 2),
         ("by_force", np.bool_),  # a contact ends where the force is zero, and the stop goes on relaxing
         ("mass", float),  # m_e
+        ("trace", float, 2),  # the rate at which volumes change without the stop's damping
         ("equations", float, (2, masses, states + 3)),  # (delta'', w2'', ..) by (delta, delta', w2, .., sin, cos, 1)
         ("step", float, 2),  # of Taylor series in contact; in single precision, so that sums of thousands are exact
         ("push", float, (masses,)),  # p_j
@@ -84,7 +85,6 @@ def law_of(masses: int) -> np.dtype:
         ("decay", float),  # of what a vector does to a stop that relaxes, since it was left
         ("touch", float, (states, states)),  # R, and
         ("vectors", float, (states, states)),  # Q of the touch of a stop that relaxes
-        ("volume", float),  # ln|det| of the jumps of the orbit while another is followed beside it
         # of the contact where it lasts
         *slow_manifold_fields(masses),
         *vectors_fields(masses),
@@ -95,6 +95,7 @@ def law_of(masses: int) -> np.dtype:
         ("row", np.int64),  # of the log, of the contact that goes on; -1 where there is no room
         ("logged", np.int64),
         ("contacts", np.int64, 2),
+        ("counted", np.int64, 2),  # of the orbit itself while another is followed beside it
         ("time", float),  # in contact
         ("work", float),  # of F/m_e on the masses that press the stop
         ("peak", float),  # delta
@@ -128,7 +129,7 @@ def set_law(law, i, point, q):
         contact.step[n] = np.float32(step)
         contact.relaxed[n], contact.apart[2 * n], contact.apart[2 * n + 1] = 0.0, 0, 0
         contact.near[n] = NEAR * (abs(point.stops[n]) + q.largest) if contact.compliant[n] else 0.0
-        fill_equations(contact.equations[n], point, 2.0 * n - 1.0, n)
+        contact.trace[n] = fill_equations(contact.equations[n], point, 2.0 * n - 1.0, n)
     contact.pressed, contact.entered, contact.watched, contact.row = 0.0, False, False, -1
     contact.close_until, contact.touched_last = -1, 0
     set_passage(law.passage[0], i, contact, point, q)
@@ -136,7 +137,7 @@ def set_law(law, i, point, q):
 
 @jit
 def fill_equations(G, point, side, n):
-    """The equations of contact with one stop."""
+    """The equations of contact with one stop. Returns the rate at which all but its damping changes volumes."""
     p, S, D, f = point.push, point.stiffness, point.damping, point.force
     masses, states, wall = len(p), 2 * len(p), point.stops[n]
     k0, c0 = 0.0, 0.0
@@ -158,9 +159,13 @@ def fill_equations(G, point, side, n):
         for j in range(3):
             G[i, states + j] = turned * (f[i, j] - share * f[0, j])
         G[i, states + 2] -= turned * k * wall
+    trace = 0.0
+    for m in range(masses):
+        trace += G[m, 2 * m + 1]
     G[0, 0] -= point.contact_stiffness[n]
     G[0, 1] -= point.contact_damping[n]
     G[0, states + 2] -= point.contact_preload[n]
+    return trace
 
 
 @inline
@@ -182,7 +187,7 @@ def begin_beside(law, o, width):
     """
     if law is not None:
         contact = law.orbits[o.lane]
-        contact.volume = o.log_volume
+        contact.counted[0], contact.counted[1] = contact.contacts[0], contact.contacts[1]
         bring_stops(contact, o, 0, 0.0, width)
         contact.pressed, contact.close_until = 0.0, -1
         for n in range(2):
@@ -190,10 +195,11 @@ def begin_beside(law, o, width):
 
 
 @inline
-def end_beside(law, o):
-    """What its jumps do to volumes is again that of the orbit itself."""
+def end_beside(law, i):
+    """The contacts of orbit i are again those of the orbit itself."""
     if law is not None:
-        o.log_volume = law.orbits[o.lane].volume
+        contact = law.orbits[i]
+        contact.contacts[0], contact.contacts[1] = contact.counted[0], contact.counted[1]
 
 
 @inline

@@ -53,7 +53,7 @@ def passages_of(masses: int, constant: bool = False) -> np.dtype:
         ("half_turn", float, (2, LANES)),  # pi/kd
         ("firm", float, (2, LANES)),  # the acceleration, for V = 1, below which a contact has one end for certain
         ("rate", float, (2, LANES)),  # the fastest in contact
-        ("trace", float, (2, LANES)),  # of the equations: the rate of volumes
+        ("trace", float, (2, LANES)),  # the rate of volumes without the stop's damping
         ("push", float, (masses, LANES)),  # p_j
         ("omega", float, (LANES,)),
         # of the cell in which the stop is touched
@@ -89,7 +89,6 @@ def passages_of(masses: int, constant: bool = False) -> np.dtype:
         # of all contacts since `clear_passed` (passed_contacts.py)
         ("passed", float, (2, LANES)),  # on the left and on the right
         ("pressed_time", float, (LANES,)),
-        ("damped", float, (LANES,)),  # the integral of c
         ("restitutions", float, (LANES,)),  # sum of -v_release/v_touch
         ("peak", float, (LANES,)),  # delta, and
         ("peak_force", float, (LANES,)),  # F/m_e
@@ -117,9 +116,7 @@ def set_passage(passage, i, contact, point, q):
         passage.stiffness[n, i], passage.damping[n, i] = contact.stiffness[n], contact.damping[n]
         passage.preload[n, i], passage.rate[n, i] = contact.preload[n], point.contact_rate[n]
         passage.by_force[n, i] = 1.0 if contact.by_force and contact.damping[n] > 0.0 else 0.0
-        passage.trace[n, i] = contact.equations[n, 0, 1]
-        for m in range(1, masses):
-            passage.trace[n, i] += contact.equations[n, m, 2 * m + 1]
+        passage.trace[n, i] = contact.trace[n]
         set_duration(passage, n, i, -contact.equations[n, 0, 0], -0.5 * contact.equations[n, 0, 1])
         set_closed_form(passage, n, i, contact, q.omega)
 

@@ -1,7 +1,6 @@
 """What is recorded of contacts that orbits pass side by side: counted in lanes, and added to those that single orbits
 had (law.py) when all have been carried."""
 
-from vibro_sweep.engine.compliant.passage_series import of_stop
 from vibro_sweep.engine.simd.jit import inline, jit
 from vibro_sweep.engine.simd.lanes import LANES, select
 from vibro_sweep.engine.simd.memory import put, row
@@ -14,7 +13,7 @@ def clear_passed(law):
         passage = law.passage[0]
         for i in range(LANES):
             passage.passed[0, i] = passage.passed[1, i] = 0.0
-            passage.pressed_time[i] = passage.damped[i] = passage.restitutions[i] = 0.0
+            passage.pressed_time[i] = passage.restitutions[i] = 0.0
             passage.peak[i] = passage.peak_force[i] = -1.0
 
 
@@ -25,7 +24,6 @@ def count_passed(passage, passed, right):
     put(passage.passed, 0, row(passage.passed, 0) + select(passed & ~right, 1.0, 0.0))
     put(passage.passed, 1, row(passage.passed, 1) + select(passed & right, 1.0, 0.0))
     put(passage.pressed_time, 0, row(passage.pressed_time, 0) + time)
-    put(passage.damped, 0, row(passage.damped, 0) + of_stop(passage.damping, right) * time)
     restitution = -row(passage.speed_after, 0) / row(passage.speed, 0)
     put(passage.restitutions, 0, row(passage.restitutions, 0) + select(passed, restitution, 0.0))
     if passage.watched:
@@ -55,4 +53,3 @@ def add_passed_of(contact, passage, o):
         contact.peak = max(contact.peak, passage.peak[i])
         contact.peak_force = max(contact.peak_force, contact.mass * passage.peak_force[i])
     o.pressed_time += passage.pressed_time[i]
-    o.log_volume -= passage.damped[i]

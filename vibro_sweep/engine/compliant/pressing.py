@@ -113,7 +113,7 @@ def stay_in_contact(law, f, stops, o, records, t, k, s):
         if last or d < np.inf:
             break
         if t.wanted and contact.damping[n] * (w - carried) > MOST_SHRUNK:
-            o.log_volume += carry_over_contact(t, o.lane, contact, side, w - carried, False)
+            carry_over_contact(t, o.lane, contact, side, w - carried, False)
             contact.begun, carried = CONTINUED, w
             begin_matrix(contact)
     ended = d < np.inf
@@ -121,11 +121,10 @@ def stay_in_contact(law, f, stops, o, records, t, k, s):
         end_contact(contact, o, k, s + w, side)
     contact.work += stored_energy(contact, n)
     leave(contact, o, stops, side)
-    o.log_volume -= contact.damping[n] * w
     o.pressed_time += w
     if t.wanted:
         if ended or w > carried:
-            o.log_volume += carry_over_contact(t, o.lane, contact, side, w - carried, ended)
+            carry_over_contact(t, o.lane, contact, side, w - carried, ended)
         t.cell[o.lane], t.offset[o.lane] = k, s + w
     contact.begun = CONTINUED
     keep_in_log(law, contact, o, k, s + w, ended)
@@ -141,7 +140,7 @@ def try_slow_motion(contact, o, t, q, k, s, w, carried):
     if contact.fast == 0 or not t.wanted:
         return carried
     if w > carried:
-        o.log_volume += carry_over_contact(t, i, contact, side, w - carried, False)
+        carry_over_contact(t, i, contact, side, w - carried, False)
         contact.begun = CONTINUED
         begin_matrix(contact)
     bring_stops(contact, o, k, s + w, q.width)

@@ -19,8 +19,8 @@ from vibro_sweep.engine.compliant.law import lane_of
 from vibro_sweep.engine.compliant.relaxing import place_at
 from vibro_sweep.engine.compliant.rotations import invert, rotate
 from vibro_sweep.engine.simd.jit import inline, jit
+from vibro_sweep.engine.variational.growth import add_log, log_growth, log_growth_in_two
 from vibro_sweep.engine.variational.orthonormal import collect, columns_of, orthonormalise_closely, place_of
-from vibro_sweep.engine.variational.tangent import log_growth
 
 TURNED = 1e-13  # what vectors have found their directions better than, unless they turn for ever
 
@@ -38,8 +38,8 @@ def begin_with_places(law, t, i, o, width, E, R):
 
 @inline
 def end_with_places(law, t, i, E, R, logs):
-    """Fill E with the vectors with which a period ends, set the logarithms of their growth, and return how many of
-    them have not been lost by then because a stop was relaxed."""
+    """Fill E with the vectors with which a period ends, set the logarithms of their growth (2, vectors), in two floats,
+    and return how many of them have not been lost by then because a stop was relaxed."""
     count = len(t.growth)
     if law is not None:
         count = end_in_contact(law.orbits[i], t, i, E, R)
@@ -48,9 +48,9 @@ def end_with_places(law, t, i, E, R, logs):
             for j in range(len(E)):
                 E[m, j] = t.Z[len(E) * m + j, i]
     for j in range(len(t.growth)):
-        logs[j] = log_growth(t, j, i)
+        logs[0, j], logs[1, j] = log_growth_in_two(t, j, i)
     if count > len(t.growth):
-        logs[count - 1] = t.alone_log[i]
+        logs[0, count - 1], logs[1, count - 1] = t.alone_log[i], 0.0
     return count
 
 
@@ -111,7 +111,7 @@ def end_in_contact(contact, t, i, E, R):
         if count > size:
             along = R[j, size] / R[j, j] * math.exp(t.alone_log[i] - log_growth(t, j, i))
             t.shear[place_of(columns, j, size), i] += along
-        t.logs[j, i] += math.log(R[j, j])
+        add_log(t, j, i, math.log(R[j, j]))
     if count > size:
         t.alone_log[i] += math.log(R[size, size])
     return count

@@ -16,10 +16,8 @@ from vibro_sweep.engine.compliant.relaxing import GONE
 from vibro_sweep.engine.compliant.touch_while_relaxing import touch_relaxing
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.simd.lanes import alike
-from vibro_sweep.engine.variational.orthonormal import (
-    orthonormalise,
-    watch,
-)
+from vibro_sweep.engine.variational.growth import shrink_volume
+from vibro_sweep.engine.variational.orthonormal import orthonormalise, watch
 from vibro_sweep.engine.variational.tangent_flight import apply_flight, only
 
 CONTINUED, RELAXED, UNRELAXED = range(3)  # how a contact begins
@@ -28,18 +26,13 @@ SHRUNK = 1.0  # as a logarithm: before a contact that shrinks vectors by more th
 
 @jit
 def carry_over_contact(t, i, contact, side, w, ended):
-    """Z over the time w in contact, from its beginning (`contact.begun`), to its end if it has `ended`.
-
-    Returns the logarithm of the determinant of a touch of a stop that still relaxes.
-    """
+    """Z over the time w in contact, from its beginning (`contact.begun`), to its end if it has `ended`."""
     apply_flight(t, only(i))
-    log_volume = touch_relaxing(t, i, contact, side) if contact.begun == UNRELAXED else 0.0
+    spanned = touch_relaxing(t, i, contact, side) if contact.begun == UNRELAXED else 1.0
     if contact.begun != UNRELAXED and contact.damping[lane_of(side)] * w > SHRUNK:
         orthonormalise(t, only(i))
     n, size, before, after = lane_of(side), len(t.growth), contact.before, contact.after
-    d, p, rate = contact.damping[n], contact.preload[n], contact.equations[n, 0, 1]
-    for m in range(1, len(contact.push)):
-        rate += contact.equations[n, m, 2 * m + 1]
+    d, p = contact.damping[n], contact.preload[n]
     if contact.begun == RELAXED:
         t.alone[n, i] = 0.0
     for j in range(size):
@@ -67,8 +60,10 @@ def carry_over_contact(t, i, contact, side, w, ended):
             t.places[n * size + j, i] = after[0]
         put_after(t, i, contact, side, j)
     t.mixed[i] = 1.0
+    shrink_volume(t, i, d, w)
+    shrunk = math.exp(contact.trace[n] * w - d * w)
     if contact.begun == UNRELAXED:
+        t.volume[i] = spanned * shrunk
         orthonormalise(t, only(i))
     else:
-        watch(t, only(i), alike(math.exp(rate * w)))
-    return log_volume
+        watch(t, only(i), alike(shrunk))

@@ -5,12 +5,12 @@ import math
 from vibro_sweep.engine.compliant.passage_series import INVERSE, carry_vector, from_contact, of_stop
 from vibro_sweep.engine.compliant.relaxing import GONE
 from vibro_sweep.engine.simd.jit import inline, noinline
-from vibro_sweep.engine.simd.lanes import LANES, bits, lanes_of, lowest, number, select
+from vibro_sweep.engine.simd.lanes import LANES, alike, bits, lanes_of, lowest, number, select
 from vibro_sweep.engine.simd.memory import put, row
+from vibro_sweep.engine.variational.growth import shrink_volume
 from vibro_sweep.engine.variational.orthonormal import watch
 from vibro_sweep.engine.variational.tangent_flight import apply_flight
 
-HALVINGS = 5  # of the argument of an exponential
 SMALLEST = 1e-15  # what a vector may grow by unseen
 
 
@@ -57,14 +57,17 @@ def carry_through_contacts(passage, strikes, t, orbits, passed):
             put(t.alone, n, select(chosen, 0.0, row(t.alone, n)))
         set_from_contact(passage, t, side, j, who)
     put(t.mixed, 0, select(who, 1.0, row(t.mixed, 0)))
-    watch(t, who, exponential(of_stop(passage.trace, right) * time))
     left = passed
     while left != 0:
         i = lowest(left)
         left &= left - 1
-        crossed = int(passage.crossed[i])
+        crossed, n = int(passage.crossed[i]), int(strikes.side[i] > 0.0)
+        damping, held = passage.damping[n, i], passage.time[i]
+        shrink_volume(t, i, damping, held)
+        t.volume[i] *= math.exp(passage.trace[n, i] * held - damping * held)
         t.cell[i] = orbits[i].cell + crossed
         t.offset[i] = strikes.offset[i] + passage.time[i] - crossed * strikes.width[i]
+    watch(t, who, alike(1.0))
 
 
 @noinline
@@ -130,16 +133,6 @@ def fly_closed(passage, c, who):
         put(vector, j + 2, select(who, w, row(vector, j + 2)))
     put(vector, 0, select(who, delta, row(vector, 0)))
     put(vector, 1, select(who, speed, row(vector, 1)))
-
-
-@inline
-def exponential(x):
-    """e^x to some nine digits, which is enough to see vectors that come to lie too close together."""
-    x = x * 2.0**-HALVINGS
-    result = 1.0 + x * (1.0 + x * (1.0 / 2.0 + x * (1.0 / 6.0 + x * (1.0 / 24.0 + x * (1.0 / 120.0)))))
-    for _ in range(HALVINGS):
-        result = result * result
-    return result
 
 
 @inline

@@ -6,14 +6,16 @@ from vibro_sweep.engine.compliant.contact_vectors import from_contact, set_befor
 from vibro_sweep.engine.compliant.law import lane_of
 from vibro_sweep.engine.compliant.rotations import factorise
 from vibro_sweep.engine.simd.jit import jit
+from vibro_sweep.engine.variational.growth import change_volume, log_growth
 from vibro_sweep.engine.variational.orthonormal import columns_of, count_growth, orthonormalise_closely, place_of
-from vibro_sweep.engine.variational.tangent import log_growth
 from vibro_sweep.engine.variational.tangent_flight import only
 
 
 @jit
 def touch_relaxing(t, i, contact, side):
-    """The touch of a stop that relaxes. Returns the logarithm of its determinant, 1 + c ds Z^-1 e.
+    """The touch of a stop that relaxes, which multiplies volumes by its determinant, 1 + c ds Z^-1 e.
+
+    Returns what the vectors span in the frame after it: their growth has counted what they span in other coordinates.
 
     e is the direction of delta' alone. ds may be large, and all vectors lie close to e then: they are Q R from here on,
     found by rotations in (pi, delta, w2, ..), whose first row alone is large.
@@ -38,8 +40,9 @@ def touch_relaxing(t, i, contact, side):
             R[a, j] = contact.before[a]
         R[1, j] += share * t.places[n * size + j, i]
     factorise(R, contact.vectors)
-    set_growth(t, i, R)
-    return math.log(abs(determinant))
+    spanned = set_growth(t, i, R)
+    change_volume(t, i, math.log(abs(determinant)))
+    return abs(determinant) / spanned
 
 
 @jit
@@ -64,10 +67,13 @@ def touch_alone(t, i, n, share, determinant, along):
 
 @jit
 def set_growth(t, i, R):
-    """The vectors have been replaced by Q of Q R."""
-    size = len(R)
+    """The vectors have been replaced by Q of Q R. Returns the determinant of R."""
+    size, t.volume[i] = len(R), 1.0
     for j in range(size):
+        t.volume[i] *= R[j, j]
         t.square_length[j, i] = R[j, j] * R[j, j]
         for k in range(j + 1, size):
             t.normal[place_of(size, j, k), i] = R[j, k] / R[j, j]
+    spanned = t.volume[i]
     count_growth(t, only(i))
+    return spanned

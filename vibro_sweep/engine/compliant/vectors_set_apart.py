@@ -3,7 +3,8 @@
 In the coordinates (phi, chi) of slow_manifold.py their flight is e^{F u} and e^{S u} side by side. The first vectors,
 as many as there are slow directions, reach all of these. Of the last ones so much of the first is taken off that their
 chi is zero: then e^{F u} is a factor of their growth, whose logarithm is added. Of two fast vectors the second is at
-right angles to the first, and grows by what is left of the determinant.
+right angles to the first. The last one grows by what is left of the determinant, e^{(tr F) u}; with c the damping of
+the stop, and r that of all else, tr F = -(c + r) - tr S, where c may be larger than all other numbers by far.
 """
 
 import math
@@ -12,6 +13,8 @@ from vibro_sweep.engine.compliant.contact_vectors import put_after, set_before
 from vibro_sweep.engine.compliant.slow_manifold import part_of
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.tables.flight import ORDER
+from vibro_sweep.engine.tables.twofold import add, multiply
+from vibro_sweep.engine.variational.growth import add_log, shrink_volume
 from vibro_sweep.engine.variational.orthonormal import collect, orthonormalise, place_of
 from vibro_sweep.engine.variational.tangent_flight import apply_flight, only
 
@@ -96,17 +99,17 @@ def solve_for_last(contact, fast):
 
 @jit
 def fast_flight(F, fast, u):
-    """e^{F u} = e^{-decay} (c + s (F + gamma)). Returns decay, c, s, gamma, and ln det(c + s (F + gamma))."""
+    """e^{F u} = e^{-decay} (c + s (F + gamma)). Returns decay, c, s, gamma."""
     if fast == 1:
-        return -F[0, 0] * u, 1.0, 0.0, 0.0, 0.0
+        return -F[0, 0] * u, 1.0, 0.0, 0.0
     gamma = -0.5 * (F[0, 0] + F[1, 1])
     det = F[0, 0] * F[1, 1] - F[0, 1] * F[1, 0]
     square = det - gamma * gamma
     root = math.sqrt(abs(square))
     if square >= 0.0:
-        return gamma * u, math.cos(root * u), math.sin(root * u) / root if root > 0.0 else u, gamma, 0.0
+        return gamma * u, math.cos(root * u), math.sin(root * u) / root if root > 0.0 else u, gamma
     fall = math.expm1(-2.0 * root * u)
-    return det / (gamma + root) * u, 1.0 + 0.5 * fall, -fall / (2.0 * root), gamma, -2.0 * root * u
+    return det / (gamma + root) * u, 1.0 + 0.5 * fall, -fall / (2.0 * root), gamma
 
 
 @jit
@@ -115,24 +118,34 @@ def fly_vectors_apart(t, i, contact, side, n, fast, u):
     part, parted, taken, states = part_of(n, fast), contact.parted, contact.taken, len(contact.parted)
     S, L, H, F, after = contact.S[part], contact.L[part], contact.H[part], contact.F[part], contact.after
     slow = states - fast
-    decay, c, s, gamma, log_det = fast_flight(F, fast, u)
-    det = parted[0, slow] * parted[1, slow + 1] - parted[1, slow] * parted[0, slow + 1] if fast == 2 else 0.0
+    decay, c, s, gamma = fast_flight(F, fast, u)
+    det = parted[0, slow]
+    if fast == 2:
+        det = det * parted[1, slow + 1] - parted[1, slow] * parted[0, slow + 1]
     for j in range(states):
         p, q = parted[0, j], parted[1, j] if fast == 2 else 0.0
         parted[0, j] = c * p + s * ((F[0, 0] + gamma) * p + F[0, 1] * q)
         if fast == 2:
             parted[1, j] = c * q + s * (F[1, 0] * p + (F[1, 1] + gamma) * q)
     fly_first(contact, S, fast, math.exp(-decay), u)
-    along, first, second = 0.0, abs(parted[0, slow]), 0.0
+    slowly = 0.0
+    for e in range(fast, states):
+        slowly += S[e, e]
+    shrink_volume(t, i, contact.damping[n], u)
+    whole, low = multiply(-contact.damping[n], 0.0, u, 0.0)
+    whole, low = add(whole, low, math.log(abs(det)) + (contact.trace[n] - slowly) * u, 0.0)
+    t.volume[i] *= math.exp(slowly * u) / abs(det)
+    along, lengths = 0.0, (whole, 0.0)
     if fast == 2:
         along, first = right_angled(parted, slow)
-        second = math.log(abs(det)) + log_det - math.log(first)
+        first = math.log(first) - decay
+        second, low = add(whole, low, -first, 0.0)
+        lengths = first, second
         if det < 0.0:
             parted[0, slow + 1], parted[1, slow + 1] = -parted[0, slow + 1], -parted[1, slow + 1]
     else:
-        parted[0, slow] /= first
-    lengths = math.log(first) - decay, second - decay
-    count_last(t, i, taken, slow, fast, along, lengths)
+        parted[0, slow] /= abs(det)
+    count_last(t, i, taken, slow, fast, along, lengths, low)
     move_places(t, i, taken, slow, fast, along, lengths)
     for j in range(states):
         for e in range(states):
@@ -150,8 +163,9 @@ def fly_vectors_apart(t, i, contact, side, n, fast, u):
 
 
 @jit
-def count_last(t, i, taken, slow, fast, along, lengths):
-    """Count the growth of the last vectors, and of how much of others they were made. lengths: logarithms."""
+def count_last(t, i, taken, slow, fast, along, lengths, low):
+    """Count the growth of the last vectors, and of how much of others they were made. lengths: logarithms; low: what
+    rounding leaves of the last one."""
     if t.collected:
         states = slow + fast
         for m in range(len(t.normal)):
@@ -163,7 +177,7 @@ def count_last(t, i, taken, slow, fast, along, lengths):
             t.normal[place_of(states, slow, slow + 1), i] = along
         collect(t, 1 << i)
     for b in range(fast):
-        t.logs[slow + b, i] += lengths[b]
+        add_log(t, slow + b, i, lengths[b], low if b == fast - 1 else 0.0)
 
 
 @jit

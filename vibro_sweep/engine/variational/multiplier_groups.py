@@ -8,22 +8,28 @@ import math
 
 import numpy as np
 
-from vibro_sweep.engine.simd.jit import jit
+from vibro_sweep.engine.simd.jit import inline, jit
+from vibro_sweep.engine.tables.twofold import add
 from vibro_sweep.engine.variational.eigenvalues import eigenvalues
 from vibro_sweep.engine.variational.orthonormal import CONDITION
 
 RANGE = 350.0  # of the logarithms of growths that one matrix of floats can hold, and products of two of its entries
 APART = 37.0  # logarithm of what is beyond rounding
 NEAREST = 1e-6  # to 1, that r is taken to be at most: REPEAT distinguishes no slower approach
+OF_LAST = 1e-6  # of the last multiplier, that may be rounding
 FIRST, AGAIN, BESIDE = range(3)  # the periods
 
 
 def multipliers_of(count: int) -> np.dtype:
     """The record of so many multipliers of an orbit, by falling modulus."""
     fields = [(name, float, (count,)) for name in ("re", "im", "error", "log", "log_error")]  # log: of the modulus
-    # how many were sought; and of the one beyond as many as there are states its `log` without the growth of the vector
-    # that moves a stop alone
-    return np.dtype([*fields, ("count", np.int64), ("beyond", float)])
+    # how many were sought; what rounding leaves of all `log` together; and of the one beyond as many as there are
+    # states its `log` without the growth of the vector that moves a stop alone
+    fields += [("count", np.int64), ("low", float), ("beyond", float)]
+    # by how much, as a logarithm, tangent vectors grew more than what contacts do to volumes explains
+    fields += [("excess", float)]
+    # of the orbit itself while another is followed beside it
+    return np.dtype([*fields, ("impacts", np.int64, 2), ("rest_time", float), ("pressed_time", float)])
 
 
 @jit
@@ -40,16 +46,26 @@ def end_of_group(logs, first):
     return last
 
 
+@inline
+def between(logs, first, j, k):
+    """The logarithm of the geometric mean of two growths over that of the first of a group."""
+    low = 0.5 * (logs[1, j] + logs[1, k]) - logs[1, first]
+    return 0.5 * (logs[0, j] + logs[0, k]) - logs[0, first] + low
+
+
 @jit
-def find_multipliers(product, logs, matrix, graze, off, found, beside, which):
+def find_multipliers(product, logs, matrix, graze, off, found, beside, which, touching):
     """Multipliers by falling modulus, of a pair that with Im > 0 first; the logarithms of their moduli, with errors.
 
     graze: what rounding of the state does to the slowest impact, relative to its speed. off: rounding of the orbit over
-    how far it began beside it. beside (3, n): scratch.
+    how far it began beside it. logs (2, n): in two floats. beside (3, n): scratch.
+    touching: with compliant stops.
     """
-    first = 0
-    while first < len(logs):
-        last = end_of_group(logs, first)
+    first, count = 0, logs.shape[1]
+    if which != BESIDE:
+        found.low = 0.0
+    while first < count:
+        last = end_of_group(logs[0], first)
         if last == first:
             break
         if which == BESIDE:
@@ -57,10 +73,53 @@ def find_multipliers(product, logs, matrix, graze, off, found, beside, which):
                 return False
         elif not find_group(product, logs, first, last, matrix, graze, found, beside, which == AGAIN):
             return False
+        if touching:
+            eliminate(product, first, last, count)
         first = last
     if which != BESIDE:
+        if touching and first == count:
+            close_product(logs, found, count)
         lose(found, first)
     return True
+
+
+@jit
+def close_product(logs, found, count):
+    """What rounding has done to the last multiplier, or pair: U, Q_0 and Q_1 have the determinant 1, so that all
+    multipliers together are the product of the growths. More than rounding stays as it is."""
+    more, low, last = 0.0, found.low, count - 1
+    for j in range(count):
+        more, low = add(more, low, found.log[j], 0.0)
+        more, low = add(more, low, -logs[0, j], -logs[1, j])
+    if abs(more) < OF_LAST:
+        pair = 2 if found.im[last] != 0.0 else 1
+        for j in range(count - pair, count):
+            before, scale = found.log[j], math.exp(-more / pair)
+            found.log[j], low = add(before, 0.0, -more / pair, 0.0)
+            found.low += low
+            found.re[j], found.im[j] = found.re[j] * scale, found.im[j] * scale
+
+
+@jit
+def eliminate(product, first, last, count):
+    """Take out of later directions what they have of this group: the eigenvalues of a graded matrix, of which each
+    group is larger than the next by far, are those of its Schur complements.
+
+    Contacts of low speed, on which rounding acts, turn directions from one period to the next.
+    """
+    for m in range(first, last):
+        pivot = m
+        for row in range(m + 1, last):
+            if abs(product[row, m]) > abs(product[pivot, m]):
+                pivot = row
+        if product[pivot, m] == 0.0:
+            return
+        for j in range(count):
+            product[m, j], product[pivot, j] = product[pivot, j], product[m, j]
+        for row in range(m + 1, count):
+            ratio = product[row, m] / product[m, m]
+            for j in range(m, count):
+                product[row, j] -= ratio * product[m, j]
 
 
 @jit
@@ -76,13 +135,16 @@ def find_group(product, logs, first, last, matrix, graze, found, beside, again):
     """The multipliers of the directions first .. last - 1."""
     re, im, turned = beside[1], beside[2], found.error[first:last]
     log, error = found.log[first:last], found.log_error[first:last]
-    count, scale = last - first, logs[first]
+    count, scale = last - first, logs[0, first]
     size = solve_group(product, logs, first, count, matrix, re, im)
     if not size < np.inf:
         return False
     for j in range(count):
         before = log[j]
-        log[j] = math.log(math.hypot(re[j], im[j])) + scale
+        own = math.log(math.hypot(re[j], im[j]))
+        log[j] = own + scale
+        if own > -np.inf:
+            found.low += own - (log[j] - scale) + logs[1, first]
         error[j] = abs(log[j] - before) if again else 0.0
         turned[j] = turn(re[j], im[j], found.re[first + j], found.im[first + j])
     if again:
@@ -115,7 +177,7 @@ def solve_group(product, logs, first, count, matrix, re, im):
         for k in range(count):
             entry = product[first + j, first + k]
             size += entry * entry
-            matrix[j, k] = entry * math.exp(0.5 * (logs[first + j] + logs[first + k]) - logs[first])
+            matrix[j, k] = entry * math.exp(between(logs, first, first + j, first + k))
     if not (size < np.inf and eigenvalues(matrix, count, re, im)):
         return np.inf
     sort_moduli(re, im, count)
@@ -140,7 +202,7 @@ def widen_group(product, logs, first, last, matrix, found, beside, off):
         old, modulus = found.log[n], math.hypot(found.re[n], found.im[n])
         if old == -np.inf or re[j] == im[j] == 0.0:
             continue
-        unit = math.exp(logs[first] - old)
+        unit = math.exp(logs[0, first] - old)
         found.log_error[n] += part * abs(math.log(unit * math.hypot(re[j], im[j])))
         if modulus > 0.0:
             x, y = found.re[n] / modulus, found.im[n] / modulus

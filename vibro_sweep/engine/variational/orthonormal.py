@@ -11,9 +11,9 @@ from vibro_sweep.engine.simd.jit import inline, jit, noinline
 from vibro_sweep.engine.simd.lanes import LANES, bits, lanes_of, select
 from vibro_sweep.engine.simd.matrices import column, product, put_column, scaled, subtract
 from vibro_sweep.engine.simd.memory import put, row
+from vibro_sweep.engine.variational.growth import LONGEST, SHORTEST, close_volume, take_logs
 
 CONDITION = 1e3  # bound on the condition number of Z past which it is orthonormalised
-SHORTEST, LONGEST = 1e-100, 1e100  # products of lengths before their logarithm is taken
 SMALLEST = 1e-30  # of the squares of all vectors together: where all decay alike, none lies too close to another
 
 
@@ -57,6 +57,7 @@ def count_growth(t, who):
     combine_places(t, who)
     if t.collected:
         collect(t, bits(who))
+    close_volume(t, who)
     extreme = normalise(t, who)
     if bits(extreme) != 0:
         take_logs(t, bits(extreme))
@@ -151,13 +152,3 @@ def collect(t, who):
                         total += t.normal[place_of(size, i, k), lane] * ratio * later
                 t.shear[n, lane] = total
                 n += 1
-
-
-@noinline
-def take_logs(t, who):
-    """Begin the products of these orbits anew before they leave the range of the floats. who: as bits."""
-    for j in range(len(t.growth)):
-        for i in range(LANES):
-            if who >> i & 1 and not SHORTEST < t.growth[j, i] < LONGEST:
-                t.logs[j, i] += np.log(t.growth[j, i])
-                t.growth[j, i] = 1.0

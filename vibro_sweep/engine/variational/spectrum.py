@@ -176,6 +176,9 @@ def close_spectrum(e, o, w, plan, point, result):
     for j in range(2, count, 2):
         total += spectrum[j] + spectrum[j + 1]
     residual = total + beyond - exact
+    if e.law is not None:
+        if not is_free(o, plan):
+            residual = w.multipliers[o.lane].excess / time - exact
     for j in range(count - q.vanishing, count):
         spectrum[j], error[j], residual = -np.inf, 0.0, -np.inf
         result.multiplier_re[j] = result.multiplier_im[j] = result.multiplier_error[j] = 0.0

@@ -14,6 +14,7 @@ from vibro_sweep.engine.simd.jit import exported, inline, jit, noinline
 from vibro_sweep.engine.simd.lanes import LANES, select
 from vibro_sweep.engine.simd.memory import put, record, row
 from vibro_sweep.engine.tables.flight import ORDER
+from vibro_sweep.engine.variational.growth import in_two, log_growth, start_record
 from vibro_sweep.engine.variational.orthonormal import watch
 from vibro_sweep.engine.variational.tangent_flight import apply_flight, catch_up, fly_to, only
 
@@ -65,6 +66,9 @@ def tangents_of(masses: int, paper: bool, compliant: bool = False) -> np.dtype:
         ("alone", float, (2 if compliant else 1, LANES)),
         ("alone_log", float, (LANES,)),  # the logarithm of its growth in D, and
         ("alone_by_itself", float, (LANES,)),  # without that by which others make it orthonormal
+        # and what rounding leaves of `logs`; of the volume, as a logarithm in two floats, what contacts multiply it by
+        ("low", float, (n if compliant else 1, LANES)),
+        ("log_volume", float, (2 if compliant else 1, LANES)),
         # by how much, as a logarithm, vectors would grow more at most if stops that are at rest to rounding still moved
         ("forgotten", float, (n if compliant else 1, LANES)),
         ("wanted", np.bool_),  # else nothing is computed
@@ -118,15 +122,6 @@ def begin(t, i):
 
 
 @jit
-def start_record(t, i):
-    """Count growth from here on."""
-    for j in range(len(t.growth)):
-        t.growth[j, i], t.logs[j, i] = 1.0, 0.0
-    for j in range(len(t.forgotten)):
-        t.forgotten[j, i] = 0.0
-
-
-@jit
 def sort_vectors(t, i):
     """Vectors by falling growth, where Z is orthonormal: those of modes that no impact joins find no order themselves.
 
@@ -143,18 +138,14 @@ def sort_vectors(t, i):
                 swap(t.places, size * m + j, size * m + j - 1, i)
             swap(t.growth, j, j - 1, i)
             swap(t.logs, j, j - 1, i)
+            if in_two(t):
+                swap(t.low, j, j - 1, i)
 
 
 @jit
 def swap(rows, m, n, i):
     """Exchange two numbers of orbit i."""
     rows[m, i], rows[n, i] = rows[n, i], rows[m, i]
-
-
-@jit
-def log_growth(t, j, i):
-    """-inf for dimensions that are lost."""
-    return t.logs[j, i] + np.log(t.growth[j, i])
 
 
 @inline

@@ -1,0 +1,140 @@
+"""What tangent vectors have grown by: products, whose logarithms are taken before they leave the range of the floats.
+
+Compliant stops may shrink vectors at rates of many thousands. There logarithms, and what contacts do to the volume that
+the vectors span, are kept in two floats: the sum of the exponents is a small difference of theirs.
+
+t: a record of tangent.py; `who`: the mask of the orbits to which something happens; i: one of them.
+"""
+
+import math
+
+import numpy as np
+
+from vibro_sweep.engine.simd.jit import inline, jit, noinline
+from vibro_sweep.engine.simd.lanes import LANES, select
+from vibro_sweep.engine.simd.memory import put, row
+from vibro_sweep.engine.tables.twofold import add, multiply
+
+SHORTEST, LONGEST = 1e-100, 1e100  # products of lengths before their logarithm is taken
+ROUNDING = 2.0**-46  # of what vectors span, for each unit of their condition number, and
+IN_CONTACT = 2.0**-26  # of the entries of contacts, which may be 10^7 times as large as what they do in the end
+
+
+@inline
+def in_two(t):
+    """Whether logarithms are kept in two floats."""
+    return len(t.low) > 1
+
+
+@jit
+def start_record(t, i):
+    """Count growth from here on."""
+    for j in range(len(t.growth)):
+        t.growth[j, i], t.logs[j, i] = 1.0, 0.0
+    for j in range(len(t.low)):
+        t.low[j, i] = t.forgotten[j, i] = 0.0
+    for j in range(len(t.log_volume)):
+        t.log_volume[j, i] = 0.0
+
+
+@inline
+def add_log(t, j, i, more, low=0.0):
+    """Let vector j grow by this logarithm, and what rounding leaves of it."""
+    if in_two(t):
+        t.logs[j, i], t.low[j, i] = add(t.logs[j, i], t.low[j, i], more, low)
+        if t.logs[j, i] == -np.inf:
+            t.low[j, i] = 0.0
+    else:
+        t.logs[j, i] += more
+
+
+@noinline
+def take_logs(t, who):
+    """Begin the products of these orbits anew before they leave the range of the floats. who: as bits."""
+    for j in range(len(t.growth)):
+        for i in range(LANES):
+            if who >> i & 1 and not SHORTEST < t.growth[j, i] < LONGEST:
+                add_log(t, j, i, np.log(t.growth[j, i]))
+                t.growth[j, i] = 1.0
+
+
+@jit
+def log_growth(t, j, i):
+    """-inf for dimensions that are lost."""
+    return t.logs[j, i] + np.log(t.growth[j, i])
+
+
+@inline
+def log_growth_in_two(t, j, i):
+    """`log_growth` and what rounding leaves of it."""
+    if in_two(t) and t.logs[j, i] > -np.inf and t.growth[j, i] > 0.0:
+        return add(t.logs[j, i], t.low[j, i], np.log(t.growth[j, i]), 0.0)
+    return log_growth(t, j, i), 0.0
+
+
+@jit
+def change_volume(t, i, more):
+    """A touch multiplies volumes by e^more."""
+    t.log_volume[0, i], t.log_volume[1, i] = add(t.log_volume[0, i], t.log_volume[1, i], more, 0.0)
+
+
+@jit
+def shrink_volume(t, i, c, w):
+    """The time w in contact with a stop multiplies volumes by e^-cw."""
+    more, low = multiply(-c, 0.0, w, 0.0)
+    t.log_volume[0, i], t.log_volume[1, i] = add(t.log_volume[0, i], t.log_volume[1, i], more, low)
+
+
+@inline
+def excess(t, i, logs, low):
+    """How much more vectors have grown by, as a logarithm, than what contacts do to volumes explains.
+
+    logs: of the growth of each, and what rounding leaves of all. Without compliant stops nothing is computed.
+    """
+    high = 0.0
+    if in_two(t):
+        for j in range(len(t.growth)):
+            high, low = add(high, low, logs[j], 0.0)
+        high, low = add(high, low, -t.log_volume[0, i], -t.log_volume[1, i])
+    return high
+
+
+@inline
+def excess_of_record(t, i):
+    """`excess` at the end of a record."""
+    high, low = 0.0, 0.0
+    if in_two(t):
+        for j in range(len(t.growth)):
+            more, rest = log_growth_in_two(t, j, i)
+            high, low = add(high, low, more, rest)
+        high, low = add(high, low, -t.log_volume[0, i], -t.log_volume[1, i])
+    return high
+
+
+@inline
+def close_volume(t, who):
+    """What rounding has done to the last of the vectors, which are orthogonal now: its length is what the others leave
+    of the volume, the product of known determinants.
+
+    A contact that shrinks one direction to 1e-9 of the others leaves it seven digits. What rounding does not explain
+    stays as it is, and shows in the sum of the exponents.
+    """
+    size = len(t.growth)
+    if in_two(t):
+        volume, place = row(t.volume, 0), 0
+        whole = 0.0 * volume
+        spanned = 1.0 + whole
+        for i in range(size):
+            square = row(t.square_length, i)
+            spanned = spanned * math.sqrt(square)
+            whole = whole + square
+            for _ in range(i + 1, size):
+                whole = whole + square * (row(t.normal, place) * row(t.normal, place))
+                place += 1
+        whole = whole / size
+        most = whole
+        for _ in range(size // 2 - 1):
+            most = most * whole
+        known = who & (row(t.lost, 0) < 1.0) & (abs(volume - spanned) < ROUNDING * most + IN_CONTACT * volume)
+        last = row(t.growth, size - 1)
+        put(t.growth, size - 1, select(known, last * (volume / spanned), last))
