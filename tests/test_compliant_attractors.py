@@ -27,3 +27,17 @@ def test_contacts_count_as_impacts(system, values):
         assert average[-3:-1].tolist() == expected and period == 1
         assert (str(kind(period, average)) == "free") == (sum(expected) == 0)
         assert ("non-impacting" in describe(period, average)) == (sum(expected) == 0)
+
+
+@pytest.mark.slow
+def test_contacts_are_those_of_the_orbit_itself():
+    """The orbit that is followed beside it, for what rounding does to its multipliers, may fail or have others."""
+    law = dict(k_stop=300, c_stop=4 * 300**0.5, release="force", stops="both", b=0.5, omega=0.8, zeta=0.03)
+    system = vs.System(mu_m=3, mu_k=2, f2=0.4, **law)
+    axis = {"b": vs.grazing(system).b_right * np.linspace(0.05, 0.95, 24)}
+    words = ["section", "attractors", "contacts"]
+    data = vs.sweep(system, axis, start={"random": 2}, transient=100, record=100, observe=words)
+    periodic, average = data.period.values == 1, data.average.values
+    assert np.count_nonzero(periodic) > 40
+    for place, counts in ((-3, data.contacts_right), (-2, data.contacts_left)):
+        np.testing.assert_array_equal(average[periodic, place], counts.values[periodic] / 100)
