@@ -34,7 +34,7 @@ def orthonormalise_all(tangents):
 
 @exported
 def multipliers_from(product, logs, found, beside, matrix):
-    return find_multipliers(product, logs, matrix, 0.0, 1.0, found[0], beside, FIRST, True)
+    return find_multipliers(True, product, logs[0], logs[1], matrix, 0.0, 1.0, found[0], beside, FIRST)
 
 
 @pytest.mark.slow

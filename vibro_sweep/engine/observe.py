@@ -15,7 +15,7 @@ from vibro_sweep.engine.point_tables import to_masses
 from vibro_sweep.engine.simd.jit import inline, jit, noinline
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.simd.memory import put
-from vibro_sweep.engine.variational.growth import excess_of_record
+from vibro_sweep.engine.variational.growth import excess_of_record, start_in_two
 from vibro_sweep.engine.variational.multiplier_groups import BESIDE
 from vibro_sweep.engine.variational.multipliers import begin_period, read_period
 from vibro_sweep.engine.variational.spectrum import (
@@ -45,7 +45,7 @@ def begin_phase(e, w, plan, phase, results):
         set_out(e, plan.record)
         for i in range(len(results)):
             reset_counts(e.orbits[i])
-            begin_contacts(e.law, i, plan.contacts)
+            begin_contacts(e.law, e.tangent[0], i, plan.contacts)
             put(e.orbits[i].largest, 0, 0.0)
             e.orbits[i].impacts_logged, e.orbits[i].log_side = 0, plan.section_side
         return plan.parts
@@ -81,9 +81,10 @@ def end_phase(e, w, plan, phase, points, results, sections, phases, running):
 
 
 @inline
-def begin_contacts(law, i, wanted):
-    """Count the contacts of an orbit with compliant stops from here on."""
+def begin_contacts(law, t, i, wanted):
+    """Count the contacts of an orbit with compliant stops, and what they do to volumes, from here on."""
     if law is not None:
+        start_in_two(t, i)
         if wanted:
             clear_contacts(law.orbits[i])
 
@@ -101,6 +102,13 @@ def keep_contacts(law, o, result, time, width):
         result.penetration_max = contact.peak if contact.peak > -np.inf else np.nan
         result.contact_force_max = contact.peak_force if contact.peak > -np.inf else np.nan
         result.restitution_mean = contact.restitutions / contact.ended if contact.ended > 0 else np.nan
+
+
+@inline
+def keep_excess(law, t, i, found):
+    """Keep how much more than contacts do to volumes tangent vectors have grown by, up to the end of the record."""
+    if law is not None:
+        found.excess = excess_of_record(t, i)
 
 
 @inline
@@ -144,7 +152,7 @@ def keep_record(e, w, plan, point, result, section, phase, running, o):
         for j in range(numbers):
             running[n, j] = growth[n, j] / (periods_read(n, len(running), plan.record) * T)
     if plan.lyapunov:
-        w.multipliers[o.lane].excess = excess_of_record(e.tangent[0], o.lane)
+        keep_excess(e.law, e.tangent[0], o.lane, w.multipliers[o.lane])
         time_average(growth, plan.record, plan.warm_up, T, result.lyapunov, result.lyapunov_error)
 
 

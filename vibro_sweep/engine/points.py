@@ -57,7 +57,8 @@ class Workspace(NamedTuple):
     axes: np.ndarray  # (LANES, numbers, vectors), and
     ends: np.ndarray  # those of one orbit
     beside: np.ndarray  # (LANES, 3, n)
-    logs: np.ndarray  # (2, n), in two floats
+    logs: np.ndarray  # (n,), and
+    low: np.ndarray  # what rounding leaves of them
     product: np.ndarray  # (n, n)
     matrix: np.ndarray  # (n, n)
     multipliers: np.ndarray  # (LANES,) `multipliers_of`
@@ -80,7 +81,8 @@ def new_workspace(plan: Plan, cells: int, samples: int, orbits: int = LANES, kin
         np.empty((LANES, numbers, vectors)),
         np.empty((numbers, vectors)),
         np.empty((LANES, 3, vectors)),
-        np.empty((2, vectors)),
+        np.empty(vectors),
+        np.zeros(vectors),
         np.empty((vectors, vectors)),
         np.empty((vectors, vectors)),
         np.zeros(LANES, multipliers_of(vectors)),

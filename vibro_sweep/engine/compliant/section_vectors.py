@@ -19,7 +19,7 @@ from vibro_sweep.engine.compliant.law import lane_of
 from vibro_sweep.engine.compliant.relaxing import place_at
 from vibro_sweep.engine.compliant.rotations import invert, rotate
 from vibro_sweep.engine.simd.jit import inline, jit
-from vibro_sweep.engine.variational.growth import add_log, log_growth, log_growth_in_two
+from vibro_sweep.engine.variational.growth import add_log, log_growth, log_growth_in_two, start_in_two
 from vibro_sweep.engine.variational.orthonormal import collect, columns_of, orthonormalise_closely, place_of
 
 TURNED = 1e-13  # what vectors have found their directions better than, unless they turn for ever
@@ -29,6 +29,7 @@ TURNED = 1e-13  # what vectors have found their directions better than, unless t
 def begin_with_places(law, t, i, o, width, E, R):
     """Fill E with the vectors with which a period begins, and begin their growth. width: of a cell."""
     if law is not None:
+        start_in_two(t, i)
         begin_in_contact(law.orbits[i], t, i, o, width, E, R)
     else:
         for m in range(len(E)):
@@ -37,20 +38,21 @@ def begin_with_places(law, t, i, o, width, E, R):
 
 
 @inline
-def end_with_places(law, t, i, E, R, logs):
-    """Fill E with the vectors with which a period ends, set the logarithms of their growth (2, vectors), in two floats,
+def end_with_places(law, t, i, E, R, logs, low):
+    """Fill E with the vectors with which a period ends, set the logarithms of their growth, in two floats,
     and return how many of them have not been lost by then because a stop was relaxed."""
     count = len(t.growth)
     if law is not None:
         count = end_in_contact(law.orbits[i], t, i, E, R)
+        for j in range(len(t.growth)):
+            logs[j], low[j] = log_growth_in_two(t, j, i)
     else:
         for m in range(len(E)):
+            logs[m] = log_growth(t, m, i)
             for j in range(len(E)):
                 E[m, j] = t.Z[len(E) * m + j, i]
-    for j in range(len(t.growth)):
-        logs[0, j], logs[1, j] = log_growth_in_two(t, j, i)
     if count > len(t.growth):
-        logs[0, count - 1], logs[1, count - 1] = t.alone_log[i], 0.0
+        logs[count - 1] = t.alone_log[i]
     return count
 
 

@@ -7,7 +7,7 @@ from vibro_sweep.engine.compliant.relaxing import GONE
 from vibro_sweep.engine.simd.jit import inline, noinline
 from vibro_sweep.engine.simd.lanes import LANES, alike, bits, lanes_of, lowest, number, select
 from vibro_sweep.engine.simd.memory import put, row
-from vibro_sweep.engine.variational.growth import shrink_volume
+from vibro_sweep.engine.variational.growth import shrink_volumes
 from vibro_sweep.engine.variational.orthonormal import watch
 from vibro_sweep.engine.variational.tangent_flight import apply_flight
 
@@ -57,14 +57,13 @@ def carry_through_contacts(passage, strikes, t, orbits, passed):
             put(t.alone, n, select(chosen, 0.0, row(t.alone, n)))
         set_from_contact(passage, t, side, j, who)
     put(t.mixed, 0, select(who, 1.0, row(t.mixed, 0)))
-    left = passed
+    shrink_volumes(t, who, c * time)
+    left, growth = passed, of_stop(passage.trace, right) * time - c * time
     while left != 0:
         i = lowest(left)
         left &= left - 1
-        crossed, n = int(passage.crossed[i]), int(strikes.side[i] > 0.0)
-        damping, held = passage.damping[n, i], passage.time[i]
-        shrink_volume(t, i, damping, held)
-        t.volume[i] *= math.exp(passage.trace[n, i] * held - damping * held)
+        crossed = int(passage.crossed[i])
+        t.volume[i] *= math.exp(number(growth, i))
         t.cell[i] = orbits[i].cell + crossed
         t.offset[i] = strikes.offset[i] + passage.time[i] - crossed * strikes.width[i]
     watch(t, who, alike(1.0))

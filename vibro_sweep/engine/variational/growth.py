@@ -9,6 +9,8 @@ t: a record of tangent.py; `who`: the mask of the orbits to which something happ
 import math
 
 import numpy as np
+from numba.core import types
+from numba.core.extending import intrinsic
 
 from vibro_sweep.engine.simd.jit import inline, jit, noinline
 from vibro_sweep.engine.simd.lanes import LANES, select
@@ -20,10 +22,16 @@ ROUNDING = 2.0**-46  # of what vectors span, for each unit of their condition nu
 IN_CONTACT = 2.0**-26  # of the entries of contacts, which may be 10^7 times as large as what they do in the end
 
 
-@inline
-def in_two(t):
-    """Whether logarithms are kept in two floats."""
-    return len(t.low) > 1
+@intrinsic
+def if_compliant(typingctx, t):
+    """None for tangent vectors where all stops are rigid: what is only for others is not compiled then."""
+    kept = isinstance(t, types.Record) and t.fields["low"].type.shape[0] > 1
+    kind = types.boolean if kept else types.none
+
+    def codegen(context, builder, sig, args):
+        return context.get_constant(kind, True) if kept else context.get_dummy_value()
+
+    return kind(t), codegen
 
 
 @jit
@@ -31,30 +39,34 @@ def start_record(t, i):
     """Count growth from here on."""
     for j in range(len(t.growth)):
         t.growth[j, i], t.logs[j, i] = 1.0, 0.0
-    for j in range(len(t.low)):
+
+
+@jit
+def start_in_two(t, i):
+    """Begin what only compliant stops need of a record."""
+    t.log_volume[0, i] = t.log_volume[1, i] = 0.0
+    for j in range(len(t.growth)):
         t.low[j, i] = t.forgotten[j, i] = 0.0
-    for j in range(len(t.log_volume)):
-        t.log_volume[j, i] = 0.0
 
 
 @inline
 def add_log(t, j, i, more, low=0.0):
-    """Let vector j grow by this logarithm, and what rounding leaves of it."""
-    if in_two(t):
-        t.logs[j, i], t.low[j, i] = add(t.logs[j, i], t.low[j, i], more, low)
-        if t.logs[j, i] == -np.inf:
-            t.low[j, i] = 0.0
-    else:
-        t.logs[j, i] += more
+    """Let vector j grow by this logarithm, and what rounding leaves of it, where there are compliant stops."""
+    t.logs[j, i], t.low[j, i] = add(t.logs[j, i], t.low[j, i], more, low)
+    if t.logs[j, i] == -np.inf:
+        t.low[j, i] = 0.0
 
 
 @noinline
-def take_logs(t, who):
+def take_logs(compliant, t, who):
     """Begin the products of these orbits anew before they leave the range of the floats. who: as bits."""
     for j in range(len(t.growth)):
         for i in range(LANES):
             if who >> i & 1 and not SHORTEST < t.growth[j, i] < LONGEST:
-                add_log(t, j, i, np.log(t.growth[j, i]))
+                if compliant is None:
+                    t.logs[j, i] += np.log(t.growth[j, i])
+                if compliant is not None:
+                    add_log(t, j, i, np.log(t.growth[j, i]))
                 t.growth[j, i] = 1.0
 
 
@@ -67,7 +79,7 @@ def log_growth(t, j, i):
 @inline
 def log_growth_in_two(t, j, i):
     """`log_growth` and what rounding leaves of it."""
-    if in_two(t) and t.logs[j, i] > -np.inf and t.growth[j, i] > 0.0:
+    if t.logs[j, i] > -np.inf and t.growth[j, i] > 0.0:
         return add(t.logs[j, i], t.low[j, i], np.log(t.growth[j, i]), 0.0)
     return log_growth(t, j, i), 0.0
 
@@ -86,33 +98,40 @@ def shrink_volume(t, i, c, w):
 
 
 @inline
+def shrink_volumes(t, who, less):
+    """Short contacts of these orbits multiply volumes by e^-less."""
+    before = row(t.log_volume, 0)
+    after = before - less
+    change = after - before
+    low = row(t.log_volume, 1) + ((before - (after - change)) - (less + change))
+    put(t.log_volume, 0, select(who, after, before))
+    put(t.log_volume, 1, select(who, low, row(t.log_volume, 1)))
+
+
+@jit
 def excess(t, i, logs, low):
     """How much more vectors have grown by, as a logarithm, than what contacts do to volumes explains.
 
-    logs: of the growth of each, and what rounding leaves of all. Without compliant stops nothing is computed.
+    logs: of the growth of each, and what rounding leaves of all.
     """
-    high = 0.0
-    if in_two(t):
-        for j in range(len(t.growth)):
-            high, low = add(high, low, logs[j], 0.0)
-        high, low = add(high, low, -t.log_volume[0, i], -t.log_volume[1, i])
+    high, low = add(-t.log_volume[0, i], -t.log_volume[1, i], low, 0.0)
+    for j in range(len(t.growth)):
+        high, low = add(high, low, logs[j], 0.0)
     return high
 
 
-@inline
+@jit
 def excess_of_record(t, i):
     """`excess` at the end of a record."""
-    high, low = 0.0, 0.0
-    if in_two(t):
-        for j in range(len(t.growth)):
-            more, rest = log_growth_in_two(t, j, i)
-            high, low = add(high, low, more, rest)
-        high, low = add(high, low, -t.log_volume[0, i], -t.log_volume[1, i])
+    high, low = -t.log_volume[0, i], -t.log_volume[1, i]
+    for j in range(len(t.growth)):
+        more, rest = log_growth_in_two(t, j, i)
+        high, low = add(high, low, more, rest)
     return high
 
 
 @inline
-def close_volume(t, who):
+def close_volume(compliant, t, who):
     """What rounding has done to the last of the vectors, which are orthogonal now: its length is what the others leave
     of the volume, the product of known determinants.
 
@@ -120,7 +139,7 @@ def close_volume(t, who):
     stays as it is, and shows in the sum of the exponents.
     """
     size = len(t.growth)
-    if in_two(t):
+    if compliant is not None:
         volume, place = row(t.volume, 0), 0
         whole = 0.0 * volume
         spanned = 1.0 + whole

@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from vibro_sweep.engine.simd.jit import inline, jit
+from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.tables.twofold import add
 from vibro_sweep.engine.variational.eigenvalues import eigenvalues
 from vibro_sweep.engine.variational.orthonormal import CONDITION
@@ -29,7 +29,8 @@ def multipliers_of(count: int) -> np.dtype:
     # by how much, as a logarithm, tangent vectors grew more than what contacts do to volumes explains
     fields += [("excess", float)]
     # of the orbit itself while another is followed beside it
-    return np.dtype([*fields, ("impacts", np.int64, 2), ("rest_time", float), ("pressed_time", float)])
+    fields += [("impacts_left", np.int64), ("impacts_right", np.int64), ("rest_time", float), ("pressed_time", float)]
+    return np.dtype(fields)
 
 
 @jit
@@ -46,57 +47,49 @@ def end_of_group(logs, first):
     return last
 
 
-@inline
-def between(logs, first, j, k):
-    """The logarithm of the geometric mean of two growths over that of the first of a group."""
-    low = 0.5 * (logs[1, j] + logs[1, k]) - logs[1, first]
-    return 0.5 * (logs[0, j] + logs[0, k]) - logs[0, first] + low
-
-
 @jit
-def find_multipliers(product, logs, matrix, graze, off, found, beside, which, touching):
+def find_multipliers(law, product, logs, low, matrix, graze, off, found, beside, which):
     """Multipliers by falling modulus, of a pair that with Im > 0 first; the logarithms of their moduli, with errors.
 
     graze: what rounding of the state does to the slowest impact, relative to its speed. off: rounding of the orbit over
-    how far it began beside it. logs (2, n): in two floats. beside (3, n): scratch.
-    touching: with compliant stops.
+    how far it began beside it. logs, low (n,): in two floats. beside (3, n): scratch.
     """
-    first, count = 0, logs.shape[1]
+    first, count = 0, len(logs)
     if which != BESIDE:
         found.low = 0.0
     while first < count:
-        last = end_of_group(logs[0], first)
+        last = end_of_group(logs, first)
         if last == first:
             break
         if which == BESIDE:
-            if not widen_group(product, logs, first, last, matrix, found, beside, off):
+            if not widen_group(product, logs, low, first, last, matrix, found, beside, off):
                 return False
-        elif not find_group(product, logs, first, last, matrix, graze, found, beside, which == AGAIN):
+        elif not find_group(law, product, logs, low, first, last, matrix, graze, found, beside, which == AGAIN):
             return False
-        if touching:
+        if law is not None:
             eliminate(product, first, last, count)
         first = last
     if which != BESIDE:
-        if touching and first == count:
-            close_product(logs, found, count)
+        if law is not None:
+            close_product(logs, low, found, first, count)
         lose(found, first)
     return True
 
 
 @jit
-def close_product(logs, found, count):
+def close_product(logs, low, found, first, count):
     """What rounding has done to the last multiplier, or pair: U, Q_0 and Q_1 have the determinant 1, so that all
-    multipliers together are the product of the growths. More than rounding stays as it is."""
-    more, low, last = 0.0, found.low, count - 1
+    multipliers together are the product of the growths, if none from `first` on is lost. More than rounding stays."""
+    more, rest, last = 0.0, found.low, count - 1
     for j in range(count):
-        more, low = add(more, low, found.log[j], 0.0)
-        more, low = add(more, low, -logs[0, j], -logs[1, j])
-    if abs(more) < OF_LAST:
+        more, rest = add(more, rest, found.log[j], 0.0)
+        more, rest = add(more, rest, -logs[j], -low[j])
+    if first == count and abs(more) < OF_LAST:
         pair = 2 if found.im[last] != 0.0 else 1
         for j in range(count - pair, count):
             before, scale = found.log[j], math.exp(-more / pair)
-            found.log[j], low = add(before, 0.0, -more / pair, 0.0)
-            found.low += low
+            found.log[j], rest = add(before, 0.0, -more / pair, 0.0)
+            found.low += rest
             found.re[j], found.im[j] = found.re[j] * scale, found.im[j] * scale
 
 
@@ -131,20 +124,20 @@ def lose(found, first):
 
 
 @jit
-def find_group(product, logs, first, last, matrix, graze, found, beside, again):
+def find_group(law, product, logs, low, first, last, matrix, graze, found, beside, again):
     """The multipliers of the directions first .. last - 1."""
     re, im, turned = beside[1], beside[2], found.error[first:last]
     log, error = found.log[first:last], found.log_error[first:last]
-    count, scale = last - first, logs[0, first]
-    size = solve_group(product, logs, first, count, matrix, re, im)
+    count, scale = last - first, logs[first]
+    size = solve_group(product, logs, low, first, count, matrix, re, im)
     if not size < np.inf:
         return False
     for j in range(count):
         before = log[j]
-        own = math.log(math.hypot(re[j], im[j]))
-        log[j] = own + scale
-        if own > -np.inf:
-            found.low += own - (log[j] - scale) + logs[1, first]
+        log[j] = math.log(math.hypot(re[j], im[j])) + scale
+        if law is not None:
+            if log[j] > -np.inf:
+                found.low += math.log(math.hypot(re[j], im[j])) - (log[j] - scale) + low[first]
         error[j] = abs(log[j] - before) if again else 0.0
         turned[j] = turn(re[j], im[j], found.re[first + j], found.im[first + j])
     if again:
@@ -170,14 +163,15 @@ def turn(x, y, other_x, other_y):
 
 
 @jit
-def solve_group(product, logs, first, count, matrix, re, im):
+def solve_group(product, logs, low, first, count, matrix, re, im):
     """The multipliers of so many directions, in units of exp(logs[first]). Returns the square of the matrix's size."""
     size = 0.0
-    for j in range(count):
-        for k in range(count):
-            entry = product[first + j, first + k]
+    for j in range(first, first + count):
+        for k in range(first, first + count):
+            entry = product[j, k]
             size += entry * entry
-            matrix[j, k] = entry * math.exp(between(logs, first, first + j, first + k))
+            rest = 0.5 * (low[j] + low[k]) - low[first]
+            matrix[j - first, k - first] = entry * math.exp(0.5 * (logs[j] + logs[k]) - logs[first] + rest)
     if not (size < np.inf and eigenvalues(matrix, count, re, im)):
         return np.inf
     sort_moduli(re, im, count)
@@ -185,13 +179,13 @@ def solve_group(product, logs, first, count, matrix, re, im):
 
 
 @jit
-def widen_group(product, logs, first, last, matrix, found, beside, off):
+def widen_group(product, logs, low, first, last, matrix, found, beside, off):
     """Add what rounding of the orbit does to these multipliers; off: as of `find_multipliers`.
 
     What happens in a period moves the section point of the periodic orbit by (1 - M)^-1 times as much.
     """
     re, im, count = beside[1], beside[2], last - first
-    if not solve_group(product, logs, first, count, matrix, re, im) < np.inf:
+    if not solve_group(product, logs, low, first, count, matrix, re, im) < np.inf:
         return False
     apart = 1.0
     for j in range(len(found.re)):
@@ -202,7 +196,7 @@ def widen_group(product, logs, first, last, matrix, found, beside, off):
         old, modulus = found.log[n], math.hypot(found.re[n], found.im[n])
         if old == -np.inf or re[j] == im[j] == 0.0:
             continue
-        unit = math.exp(logs[0, first] - old)
+        unit = math.exp(logs[first] - old)
         found.log_error[n] += part * abs(math.log(unit * math.hypot(re[j], im[j])))
         if modulus > 0.0:
             x, y = found.re[n] / modulus, found.im[n] / modulus

@@ -21,7 +21,7 @@ from vibro_sweep.engine.compliant.law import begin_beside, count_contacts_anew, 
 from vibro_sweep.engine.compliant.section_vectors import begin_with_places, count_vectors, end_with_places
 from vibro_sweep.engine.motion.orbits import reset_counts, set_state
 from vibro_sweep.engine.motion.together import flight_of, stops_of
-from vibro_sweep.engine.simd.jit import jit, noinline
+from vibro_sweep.engine.simd.jit import inline, jit, noinline
 from vibro_sweep.engine.variational import tangent
 from vibro_sweep.engine.variational.growth import excess
 from vibro_sweep.engine.variational.multiplier_groups import AGAIN, BESIDE, find_multipliers
@@ -53,24 +53,12 @@ def begin_period(e, w, results, which):
             tangent.start_record(t, i)
             begin_with_places(e.law, t, i, o, flight_of(e, o).oscillator[0].width, w.axes[i], w.matrix)
             if which == BESIDE:
-                keep_counts(o, w.multipliers[i])
+                found = w.multipliers[i]
+                found.impacts_left, found.impacts_right = o.impacts_left, o.impacts_right
+                found.rest_time, found.pressed_time = o.rest_time, o.pressed_time
                 step_aside(e, o, w.beside[i, 0], w.state)
             reset_counts(o)
             count_contacts_anew(e.law, i)
-
-
-@jit
-def keep_counts(o, found):
-    """Keep what the orbit itself touches while another is followed beside it."""
-    found.impacts[0], found.impacts[1] = o.impacts_left, o.impacts_right
-    found.rest_time, found.pressed_time = o.rest_time, o.pressed_time
-
-
-@jit
-def restore_counts(o, found):
-    """The other orbit may have failed, or touch the stops otherwise."""
-    o.impacts_left, o.impacts_right = found.impacts[0], found.impacts[1]
-    o.rest_time, o.pressed_time = found.rest_time, found.pressed_time
 
 
 @jit
@@ -102,7 +90,9 @@ def read_period(e, w, results, which):
         o = e.orbits[i]
         if which == BESIDE and o.periods > 0:
             end_beside(e.law, i)
-            restore_counts(o, w.multipliers[i])
+            found = w.multipliers[i]  # the other orbit may have failed, or touch the stops otherwise
+            o.impacts_left, o.impacts_right = found.impacts_left, found.impacts_right
+            o.rest_time, o.pressed_time = found.rest_time, found.pressed_time
             if o.status != status.OK:
                 o.status, o.periods = status.OK, 0  # the orbit itself has not failed
         if o.periods > 0 and o.status == status.OK:
@@ -111,26 +101,34 @@ def read_period(e, w, results, which):
                 largest = max(largest, o.largest[j])
             graze = 2.0**-52 * (omega * largest / o.slowest) ** 2
             off = OFF / ASIDE * math.sqrt(1.0 + o.impacts_left + o.impacts_right)
-            known, found = end_with_places(e.law, t, i, w.ends, w.matrix, w.logs), w.multipliers[i]
+            known = end_with_places(e.law, t, i, w.ends, w.matrix, w.logs, w.low)
+            found = w.multipliers[i]
             if which == BESIDE:
                 count = min(known, found.count)
             else:
                 count = count_vectors(e.law, t, w.axes[i], w.ends, known)
             set_product(t, i, w.axes[i], w.ends, count, w.product)
             solved = find_multipliers(
-                w.product, w.logs[:, :count], w.matrix, graze, off, found, w.beside[i], which, e.law is not None
+                e.law, w.product, w.logs[:count], w.low, w.matrix, graze, off, found, w.beside[i], which
             )
             if not (solved or which == BESIDE):
                 o.status = status.NOT_FINITE
             if which != BESIDE:
-                found.count, found.beyond = count, 0.0
-                if known > len(t.growth):
-                    last = known - 1
-                    found.beyond = (found.log[last] if count == known else w.logs[0, last]) - t.alone_by_itself[i]
-                found.excess = excess(t, i, found.log, found.low + found.beyond)
+                found.count = count
+                keep_sum(e.law, t, i, found, known, w.logs)
             if which == AGAIN:
                 find_direction(t, i, w.axes[i], w.beside[i, 0])
     t.collected = False
+
+
+@inline
+def keep_sum(law, t, i, found, known, logs):
+    """Keep how much the multipliers, and one more of those `known`, differ from what contacts do to volumes."""
+    if law is not None:
+        last, found.beyond = known - 1, 0.0
+        if known > len(t.growth):
+            found.beyond = (found.log[last] if found.count == known else logs[last]) - t.alone_by_itself[i]
+        found.excess = excess(t, i, found.log, found.low + found.beyond)
 
 
 @jit

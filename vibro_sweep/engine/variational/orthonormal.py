@@ -11,7 +11,7 @@ from vibro_sweep.engine.simd.jit import inline, jit, noinline
 from vibro_sweep.engine.simd.lanes import LANES, bits, lanes_of, select
 from vibro_sweep.engine.simd.matrices import column, product, put_column, scaled, subtract
 from vibro_sweep.engine.simd.memory import put, row
-from vibro_sweep.engine.variational.growth import LONGEST, SHORTEST, close_volume, take_logs
+from vibro_sweep.engine.variational.growth import LONGEST, SHORTEST, close_volume, if_compliant, take_logs
 
 CONDITION = 1e3  # bound on the condition number of Z past which it is orthonormalised
 SMALLEST = 1e-30  # of the squares of all vectors together: where all decay alike, none lies too close to another
@@ -57,10 +57,10 @@ def count_growth(t, who):
     combine_places(t, who)
     if t.collected:
         collect(t, bits(who))
-    close_volume(t, who)
+    close_volume(if_compliant(t), t, who)
     extreme = normalise(t, who)
     if bits(extreme) != 0:
-        take_logs(t, bits(extreme))
+        take_logs(if_compliant(t), t, bits(extreme))
     put(t.volume, 0, select(who, 1.0, row(t.volume, 0)))
 
 

@@ -14,7 +14,7 @@ from vibro_sweep.engine.simd.jit import exported, inline, jit, noinline
 from vibro_sweep.engine.simd.lanes import LANES, select
 from vibro_sweep.engine.simd.memory import put, record, row
 from vibro_sweep.engine.tables.flight import ORDER
-from vibro_sweep.engine.variational.growth import in_two, log_growth, start_record
+from vibro_sweep.engine.variational.growth import log_growth, start_record
 from vibro_sweep.engine.variational.orthonormal import watch
 from vibro_sweep.engine.variational.tangent_flight import apply_flight, catch_up, fly_to, only
 
@@ -138,8 +138,6 @@ def sort_vectors(t, i):
                 swap(t.places, size * m + j, size * m + j - 1, i)
             swap(t.growth, j, j - 1, i)
             swap(t.logs, j, j - 1, i)
-            if in_two(t):
-                swap(t.low, j, j - 1, i)
 
 
 @jit
