@@ -133,7 +133,8 @@ def excess_of_record(t, i):
 @inline
 def close_volume(compliant, t, who):
     """What rounding has done to the last of the vectors, which are orthogonal now: its length is what the others leave
-    of the volume, the product of known determinants.
+    of the volume, the product of known determinants. What it does to the places of stops has been divided by the length
+    as it was computed, and goes with it: what it did to them in all stays.
 
     A contact that shrinks one direction to 1e-9 of the others leaves it seven digits. What rounding does not explain
     stays as it is, and shows in the sum of the exponents.
@@ -157,3 +158,6 @@ def close_volume(compliant, t, who):
         known = who & (row(t.lost, 0) < 1.0) & (abs(volume - spanned) < ROUNDING * most + IN_CONTACT * volume)
         last = row(t.growth, size - 1)
         put(t.growth, size - 1, select(known, last * (volume / spanned), last))
+        for m in range(size - 1, len(t.places), size):
+            place = row(t.places, m)
+            put(t.places, m, select(known, place * (spanned / volume), place))
