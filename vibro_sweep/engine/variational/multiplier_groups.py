@@ -79,18 +79,21 @@ def find_multipliers(law, product, logs, low, matrix, graze, off, found, beside,
 @jit
 def close_product(logs, low, found, first, count):
     """What rounding has done to the last multiplier, or pair: U, Q_0 and Q_1 have the determinant 1, so that all
-    multipliers together are the product of the growths, if none from `first` on is lost. More than rounding stays."""
+    multipliers together are the product of the growths, if none from `first` on is lost. More than rounding stays, and
+    what is taken back remains in the errors: rounding may have been in another multiplier."""
     more, rest, last = 0.0, found.low, count - 1
     for j in range(count):
         more, rest = add(more, rest, found.log[j], 0.0)
         more, rest = add(more, rest, -logs[j], -low[j])
     if first == count and abs(more) < OF_LAST:
         pair = 2 if found.im[last] != 0.0 else 1
+        share = more / pair
         for j in range(count - pair, count):
-            before, scale = found.log[j], math.exp(-more / pair)
-            found.log[j], rest = add(before, 0.0, -more / pair, 0.0)
+            found.log[j], rest = add(found.log[j], 0.0, -share, 0.0)
             found.low += rest
-            found.re[j], found.im[j] = found.re[j] * scale, found.im[j] * scale
+            found.re[j], found.im[j] = found.re[j] * math.exp(-share), found.im[j] * math.exp(-share)
+            found.log_error[j] += abs(share)
+            found.error[j] += abs(share) * math.hypot(found.re[j], found.im[j])
 
 
 @jit
