@@ -62,9 +62,9 @@ def unfit(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def scene(tmp_path_factory):
-    """A scene of some seconds in at least sixteen blocks."""
+    """A scene of some seconds, in several blocks: there is time to stop its run in the middle on a busy machine too."""
     path = tmp_path_factory.mktemp("scene") / "scene.yaml"
-    more = f"start: {{random: 2, seed: 5}}\norbit: {{transient: 10000, record: 40}}\n{ALL}\n"
+    more = f"start: {{random: 2, seed: 5}}\norbit: {{transient: 250000, record: 40}}\n{ALL}\n"
     path.write_text(f"system: {{{PAPER}}}\nsweep: {{b: {{start: 6.5, stop: 6.8, num: 300}}}}\n{more}")
     return path
 

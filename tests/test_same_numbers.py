@@ -112,10 +112,10 @@ def test_random_starts(tmp_path):
 
 @pytest.fixture(scope="module")
 def long_scene(tmp_path_factory):
-    """A scene of a second or two, in several blocks, and its numbers."""
+    """A scene of some seconds, in several blocks, and its numbers."""
     folder = tmp_path_factory.mktemp("long")
     path = folder / "long.yaml"
-    text = f"sweep: {{b: {{start: 6.5, stop: 6.8, num: 300}}}}\norbit: {{transient: 100000, record: 200}}\n{ALL}\n"
+    text = f"sweep: {{b: {{start: 6.5, stop: 6.8, num: 300}}}}\norbit: {{transient: 200000, record: 200}}\n{ALL}\n"
     path.write_text(f"system: {{{PAPER}}}\n{text}")
     return path, run(folder, text)
 
