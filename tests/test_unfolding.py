@@ -1,11 +1,23 @@
-"""Bifurcation curves where unequal stops unfold what the symmetric oscillator does at one point."""
+"""Branches and curves where unequal stops unfold what the symmetric oscillator does at one point."""
 
 import numpy as np
 import pytest
 from support.curves import first, types
+from support.drawn_branches import Case
 from support.oscillators import PAPER
+from support.same_branch import follow
 
 import vibro_sweep as vs
+
+OF_PAPER = {"mu_m": 10, "mu_k": 5, "zeta": 0.05, "f2": 0.0, "omega": 0.63, "tau": 0.0}
+# stops, the pitchfork of the orbit that hits both, and special points of the branches into which an offset unfolds it,
+# below its place
+UNFOLDED = {
+    "rigid": ({"R": 0.8}, 3.8928194355634025, ["boundary", "fold", "graze"], ["graze"]),
+    "compliant": (
+        {"R": None, "k_stop": 100.0}, 3.7417481866132416, ["boundary", "fold", "fold", "graze"], ["graze", "fold"],
+    ),
+}  # fmt: skip
 
 
 @pytest.mark.slow
@@ -46,3 +58,23 @@ def test_pitchfork_is_a_cusp_of_folds_where_the_symmetry_is_broken(symmetric_bra
     near = (np.abs(offset) > 1e-6) & (np.abs(offset) < 1e-2)  # |b - b_0| like offset^(2/3)
     power = np.polyfit(np.log(np.abs(offset[near])), np.log(np.abs(b[near] - pitchfork.parameters["b"])), 1)[0]
     assert near.sum() > 6 and power == pytest.approx(2 / 3, abs=0.03)
+
+
+@pytest.mark.parametrize("stops", UNFOLDED)
+@pytest.mark.parametrize("factor", [0.25, 1.0, 2.0])
+def test_branches_stay_apart_where_a_pitchfork_is_unfolded(stops, factor):
+    """However small the offset: one branch turns at a fold, at |b - b_0| like offset^(2/3), and comes to the other one
+    as close as offset^(1/3)."""
+    stops, pitchfork, turning, smooth = UNFOLDED[stops]
+    offsets, folds = 10.0 ** np.arange(-7, -2), []
+    for offset in offsets:
+        system = vs.Oscillator.named("two_mass", b=3.0, offset=offset, **OF_PAPER, **stops)
+        one, other = (
+            follow(Case(vs.periodic_orbit(system.replace(b=b), itinerary="LR"), "b", (1.0, 7.0)), factor).special
+            for b in (3.0, 5.0)
+        )
+        assert [special.type for special in one] == turning
+        assert [special.type for special in other if special.parameters["b"] < pitchfork] == smooth
+        folds.append(one[1].parameters["b"])
+    power = np.polyfit(np.log(offsets), np.log(pitchfork - np.array(folds)), 1)[0]
+    assert power == pytest.approx(2 / 3, abs=0.01)

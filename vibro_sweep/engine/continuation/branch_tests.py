@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from vibro_sweep.engine.continuation.certificate import certify
-from vibro_sweep.engine.continuation.curve_tests import changes_sign, determinant, eigenvalues_of
+from vibro_sweep.engine.continuation.curve_tests import changes_sign, determinant, eigenvalues_of, passes_birth
 from vibro_sweep.engine.continuation.lasting import factor_of_grazes, is_contact
 from vibro_sweep.engine.continuation.moving_flow import OMEGA, ONE_PLUS_R_HIGH, ONE_PLUS_R_LOW
 from vibro_sweep.engine.continuation.workspace import BRANCH_TESTS, TEST
@@ -98,6 +98,27 @@ def counts_differ(x, y):
         return False
     collide = above + below + 2.0 * pairs == 0.0 and above % 2.0 == 0.0 and below % 2.0 == 0.0
     return not (collide and min(x[TEST.away], y[TEST.away]) > FAR_OUTSIDE)
+
+
+@jit
+def crosses_over(c, a, b):
+    """Whether b lies on another branch than a, as far as tests tell: where an offset unfolds a pitchfork, two run close
+    beside each other.
+
+    sign(dp/ds) (-1)^(number of multipliers > 1) prod_i sign(D_i) is the same all along a branch: two of the three
+    change at folds, and at grazes; at a birth the first alone. Where two compliant contacts have vanished it is not
+    known; then the step must be shorter.
+    """
+    x, y, beyond = a.tests, b.tests, 0.0
+    if x[TEST.above] < 0.0 or y[TEST.above] < 0.0 or x[TEST.on_circle] > 0.0 or y[TEST.on_circle] > 0.0:
+        return False
+    for i in range(len(a.x)):
+        if not (b.x[i, -1] if c.rests[i] else -c.sides[i] * b.x[i, -1]) > 0.0:
+            beyond += 1.0
+    if beyond > 1.0 and c.compliant is not None:
+        return True
+    changes = x[TEST.above] + y[TEST.above] + beyond
+    return (a.tangent_p[0] * b.tangent_p[0] < 0.0) != (changes % 2.0 != 0.0) and not passes_birth(c, a, b)
 
 
 @jit

@@ -166,9 +166,16 @@ def is_born(c, sign, a, b):
 
 
 @jit
+def passes_birth(c, a, b):
+    """Whether the orbits of the curve may be born between two points: from orbits of half the period, or symmetric
+    ones."""
+    return (c.repeats and is_born(c, 1.0, a, b)) or (c.mirrors and is_born(c, -1.0, a, b))
+
+
+@jit
 def happens_on_curve(c, a, b):
     """Whether a test changes its sign between two points, or a pair comes near to 1 or -1."""
-    if (c.repeats and is_born(c, 1.0, a, b)) or (c.mirrors and is_born(c, -1.0, a, b)):
+    if passes_birth(c, a, b):
         return True
     for i in (*CURVE_TESTS, TEST.hold, TEST.relaxed):
         if changes_sign(a.tests[i], b.tests[i]):

@@ -1,6 +1,11 @@
 """What is looked at in each point of a branch or a curve, and what happens between two of them."""
 
-from vibro_sweep.engine.continuation.branch_tests import examine_branch, happens_on_branch, touches_on_branch
+from vibro_sweep.engine.continuation.branch_tests import (
+    crosses_over,
+    examine_branch,
+    happens_on_branch,
+    touches_on_branch,
+)
 from vibro_sweep.engine.continuation.corrector import assemble
 from vibro_sweep.engine.continuation.curve_tests import examine_curve, happens_on_curve
 from vibro_sweep.engine.continuation.problem import ORBIT, STICK
@@ -39,3 +44,9 @@ def happens(c, a, b):
 def touches(path, c, a, b):
     """Whether something may happen twice beside a, unseen by the tests."""
     return c.kind == ORBIT and touches_on_branch(path, a, b)
+
+
+@jit
+def goes_over(c, a, b):
+    """Whether b lies on another branch than a."""
+    return c.kind == ORBIT and crosses_over(c, a, b)

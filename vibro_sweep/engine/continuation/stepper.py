@@ -3,6 +3,7 @@
 Distances are measured in the units of the problem, over phases, jumps, parameters and theta. A call ends where
 something happens between two points, so that the caller can locate it; both points are kept. It ends too where
 something may happen twice between two points of a branch, unseen by their tests: then the caller looks between them.
+A step that goes over to another branch is made shorter.
 """
 
 import math
@@ -12,7 +13,7 @@ import numpy as np
 from vibro_sweep.engine.continuation.corrector import assemble, in_order, move, newton_step, put_plane
 from vibro_sweep.engine.continuation.curve_tests import overflows
 from vibro_sweep.engine.continuation.lasting import contacts_begin, forced
-from vibro_sweep.engine.continuation.looking_at import examine, happens, refresh, touches
+from vibro_sweep.engine.continuation.looking_at import examine, goes_over, happens, refresh, touches
 from vibro_sweep.engine.continuation.moving_flow import OMEGA, move_exactly, move_to, take_shift
 from vibro_sweep.engine.continuation.path import (
     bulges,
@@ -43,6 +44,7 @@ MOST_SHIFTS = 5  # of one step
 BEYOND = 1.2  # times the reach of the plane, up to where its polynomials hold
 EARLY = 10  # points before which a curve is not yet taken to be closed
 KINK = 1e-3  # of the longest step: in which a branch may turn where a contact ends in another way
+FINE = 1e-6  # of the longest step: to that they are shortened where they go over to another branch
 COARSE = 0.03  # of the longest step: to that they are shortened where they do not distinguish pairs of multipliers
 
 
@@ -145,7 +147,8 @@ def take_steps(f, c, path, place, row, b):
             shifts += 1
             continue
         shifts = 0
-        if length > COARSE * path.longest and hides(path, a, place, length):
+        over = length > FINE * path.longest and goes_over(c, a, place)
+        if over or (length > COARSE * path.longest and hides(path, a, place, length)):
             length *= 0.5
             continue
         touching = touches(path, c, a, place)
