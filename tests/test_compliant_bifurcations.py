@@ -75,8 +75,22 @@ def test_points_of_codimension_two_in_45_digits(name):
     found = vs.bifurcation_curve(start, names, bounds).special
     assert types <= {one.type for one in found} and not any(one.type == "failed" for one in found)
     for special in found:
-        if special.type in CONDITIONS:
+        if special.type in CONDITIONS and not special.type.startswith("degenerate"):
             compare(special)
+
+
+@pytest.mark.parametrize("name, which", [
+    *slow_cases(("pitchforks", [-1])),
+    *(pytest.param(name, None, marks=pytest.mark.soak) for name in ("pitchforks", "pairs over the mass")),
+])  # fmt: skip
+def test_where_the_criticality_changes_in_60_digits(name, which):
+    """A minute each: the cubic coefficient is formed by differences of the map."""
+    branch, of, names, bounds, _ = CURVES[name]
+    start = next(one for one in branch_of(branch).special if one.type == of)
+    found = [one for one in vs.bifurcation_curve(start, names, bounds).special if one.type.startswith("degenerate")]
+    assert len(found) == {"pitchforks": 5}.get(name, 1)
+    for special in found if which is None else [found[k] for k in which]:
+        compare(special)
 
 
 @pytest.mark.parametrize("names, bounds", [

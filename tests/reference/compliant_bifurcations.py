@@ -5,6 +5,7 @@ and the free numbers of the oscillator. Conditions on the matrix M of the orbit:
 
     fold det(M - 1) = 0    flip, pitchfork det(M + 1) = 0    pair det(M - e^{i theta}) = 0
     double 1, -1: the derivative of det(M - mu) by mu is 0 as well    cusp: w.F''(v, v) = 0, F v = 0, w.F = 0
+    third: the cubic coefficient of the normal form of a flip or a pair is 0, by differences of the map
 """
 
 from types import SimpleNamespace
@@ -12,10 +13,12 @@ from types import SimpleNamespace
 import numpy as np
 from mpmath import mp, mpf
 
-from reference.compliant_orbits import DIGITS, ContactOrbit
+from reference.compliant_orbits import DIGITS, ContactMap, ContactOrbit
+from reference.normal_forms import third_order
 
 STEP = mpf(10) ** -20  # of first differences
 WIDE = mpf(10) ** -12  # of second ones
+THIRD, OF_THIRD = mpf(10) ** -12, 60  # step of third ones, and digits: stiff stops bend the map
 
 
 def moved(q, slopes, dp):
@@ -37,7 +40,7 @@ def moved(q, slopes, dp):
 class Bifurcation:
     """q, slopes: the oscillator where the package says that it is, and its derivatives by the free numbers.
 
-    conditions : "fold", "flip", "pair", "double_1", "double_-1", "cusp"
+    conditions : "fold", "flip", "pair", "double_1", "double_-1", "cusp", "third"
     touches : the stops (+1, -1) of turning points
     angles : of pairs, where these are known; None: another unknown each
     pulled : as of `ContactOrbit`
@@ -57,19 +60,22 @@ class Bifurcation:
             gap, speed = self._gap(orbit, own, u[self.m + k])
             rows += [gap - (orbit.q.high if side > 0 else orbit.q.low), speed]
         M = orbit.closure(own)
-        one = mp.eye(M.rows)
+        one, mu = mp.eye(M.rows), mpf(-1)
         for name in self.conditions:
             if name in ("fold", "flip"):
                 rows.append(mp.det(M - one if name == "fold" else M + one))
             elif name == "pair":
                 theta = u[self.m + len(self.touches)] if self.angle is None else self.angle
-                value = mp.det(M - mp.expjpi(theta / mp.pi) * one)
+                mu = mp.expjpi(theta / mp.pi)
+                value = mp.det(M - mu * one)
                 rows += [value.real, value.imag]
             elif name == "cusp":
                 rows.append(self._cusp(orbit, own))
+            elif name == "third":
+                rows.append(third_order(ContactMap(orbit, own[: 2 * orbit.N], own[2 * orbit.N :]), mu, THIRD))
             else:
-                mu, h = mpf(int(name.split("_")[1])), mpf(10) ** -15
-                rows.append((mp.det(M - (mu + h) * one) - mp.det(M - (mu - h) * one)) / (2 * h))
+                double, h = mpf(int(name.split("_")[1])), mpf(10) ** -15
+                rows.append((mp.det(M - (double + h) * one) - mp.det(M - (double - h) * one)) / (2 * h))
         return mp.matrix(rows)
 
     @staticmethod
@@ -103,7 +109,7 @@ class Bifurcation:
 
         state, times : as of `ContactOrbit.solve`; touching: times of the touches; theta: of a pair
         """
-        with mp.workdps(DIGITS):
+        with mp.workdps(OF_THIRD if "third" in self.conditions else DIGITS):
             angle = [mpf(theta)] if "pair" in self.conditions and self.angle is None else []
             known = [*state[::2], *state[1::2], *times, *touching]
             u = mp.matrix([*map(mpf, known), *angle, *[mpf(0)] * len(self.slopes)])

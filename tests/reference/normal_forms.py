@@ -48,9 +48,9 @@ class SectionMap:
         return mp.matrix([s.sigma * a - b for a, b in zip(z, self.centre, strict=True)])
 
 
-def third_order(f, mu):
+def third_order(f, mu, h=STEP):
     """Re of the cubic coefficient at the multiplier mu: zero at a degenerate flip (mu = -1) or Neimark-Sacker point."""
-    h, N = STEP, len(f.centre)
+    N = len(f.centre)
     known = {}
 
     def at(x):

@@ -59,6 +59,8 @@ CONDITIONS = {
     "graze": [],
     "split": [],
     "cusp": ["fold", "cusp"],
+    "degenerate_flip": ["flip", "third"],
+    "degenerate_neimark_sacker": ["pair", "third"],
     "fold_flip": ["fold", "flip"],
     "fold_neimark_sacker": ["fold", "pair"],
     "flip_neimark_sacker": ["flip", "pair"],
