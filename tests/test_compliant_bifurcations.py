@@ -66,9 +66,8 @@ def test_special_points_of_branches_in_45_digits(name):
     assert compared >= 2
 
 
-@pytest.mark.parametrize(
-    "name", ["folds of one mass", *slow_cases(*[name for name in CURVES if "of one mass" not in name])]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("name", CURVES)
 def test_points_of_codimension_two_in_45_digits(name):
     branch, of, names, bounds, types = CURVES[name]
     start = next(one for one in branch_of(branch).special if one.type == of)
@@ -137,9 +136,11 @@ OVER_AN_END = dict(
 )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("numbers, bounds", [
     (TWICE, (-0.0276, 0.017)),
-    *slow_cases((TWICE | dict(preload=0.01), (-0.0276, 0.017)), (OVER_AN_END, (-0.01, 0.01))),
+    (TWICE | dict(preload=0.01), (-0.0276, 0.017)),
+    (OVER_AN_END, (-0.01, 0.01)),
 ])  # fmt: skip
 def test_two_contacts_become_one(numbers, bounds, tmp_path):
     """At one place for both branches, that of the orbits with two contacts and that with one, in 45 digits."""

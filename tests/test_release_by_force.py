@@ -23,7 +23,8 @@ def branch_of(name, bounds, **numbers):
     return vs.continue_orbit(vs.periodic_orbit(one_mass(**numbers), itinerary="R"), name, bounds)
 
 
-@pytest.mark.parametrize("preload", [0.0, *slow_cases(0.03)])
+@pytest.mark.slow
+@pytest.mark.parametrize("preload", [0.0, 0.03])
 def test_special_points_in_45_digits(preload):
     branch = branch_of("omega", (0.3, 3), c_stop=0.5, preload=preload)
     types = [one.type for one in branch.special]
