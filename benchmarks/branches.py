@@ -50,7 +50,7 @@ def one_sided(count: int) -> Solution:
 def from_guesses(solution: Solution) -> tuple[float, float]:
     """Microseconds for an orbit from a guess in a compiled batch, and the share that converged."""
     e, rng = EventEquations.of(solution), np.random.default_rng(0)
-    guesses = solution.u * (1 + rng.uniform(-NEAR, NEAR, (GUESSES, solution.size)))
+    guesses = solution.u * (1 + rng.uniform(-NEAR, NEAR, (GUESSES, len(solution.u))))
     found = np.isfinite(e.newton(guesses)[1]).mean()
     return least(lambda: e.newton(guesses)) / GUESSES * 1e6, found
 
