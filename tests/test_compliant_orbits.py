@@ -90,6 +90,25 @@ def test_a_branch_in_the_stiffness_reaches_the_rigid_orbit():
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("name", ["c_stop", "preload"])
+def test_numbers_of_a_stop_that_are_left_out_can_be_followed(name):
+    """They are 0, and numbers like any other."""
+    given, left_out = (
+        vs.continue_orbit(vs.periodic_orbit(system, itinerary="R"), name, (0, 0.5))
+        for system in (one_mass(**{name: 0.0}), one_mass())
+    )
+    assert [one.type for one in left_out.special] == ["boundary", "boundary"]
+    assert left_out.ends.orbit.system == one_mass(**{name: 0.5})
+    for one, other in zip(left_out.special, given.special, strict=True):
+        np.testing.assert_array_equal(one.multipliers, other.multipliers)
+
+
+def test_a_rigid_stop_has_no_numbers_of_a_compliant_one():
+    orbit = vs.periodic_orbit(vs.System(**PAPER, b=4, R=0.8), itinerary="R")
+    with pytest.raises(vs.VibroSweepError, match=r"'c_stop' is not allowed; it must be one of mu_m, .*, R, b, offset"):
+        vs.continue_orbit(orbit, "c_stop", (0, 1))
+
+
 def test_special_points_of_a_branch_are_where_the_multipliers_of_the_reference_are():
     orbit = vs.periodic_orbit(one_mass(), itinerary="R")
     branch = vs.continue_orbit(orbit, "omega", (0.3, 3))

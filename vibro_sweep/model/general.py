@@ -18,7 +18,7 @@ from vibro_sweep.model.parameter import LENGTHS
 from vibro_sweep.model.parameters import Parameter, ParameterError, checked_number
 from vibro_sweep.model.real import array_of, number_of
 from vibro_sweep.model.state import MOST_MASSES
-from vibro_sweep.model.stops import check_stops
+from vibro_sweep.model.stops import check_stops, completed
 from vibro_sweep.model.units import ALLOWED, Units, units_from
 
 
@@ -152,7 +152,7 @@ class Oscillator(AnyOscillator):
 
     @property
     def family(self) -> Family:
-        return Family(_builder(self.model.name, tuple(self.given.items())), self.numbers)
+        return Family(_builder(self.model.name, tuple(self.given.items())), completed(self.numbers))
 
     @cached_property
     def linear(self) -> Linear:

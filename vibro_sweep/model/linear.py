@@ -122,6 +122,11 @@ class Family:
     build: Callable[..., Linear]
     numbers: dict
 
+    @property
+    def free(self) -> dict[str, float]:
+        """The numbers that have a value: those that may be changed along a branch."""
+        return {name: value for name, value in self.numbers.items() if isinstance(value, (int, float))}
+
     def replace(self, **changes) -> "Family":
         """The same family with other numbers."""
         return Family(self.build, self.numbers | changes)

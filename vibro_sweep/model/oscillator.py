@@ -26,7 +26,7 @@ from vibro_sweep.model.parameters import (
     physical_range,
 )
 from vibro_sweep.model.real import number_of
-from vibro_sweep.model.stops import check_stops
+from vibro_sweep.model.stops import check_stops, completed
 from vibro_sweep.model.units import ALLOWED, Units, units_from
 
 Stops = Literal["both", "right", "left"]
@@ -85,7 +85,7 @@ class System(AnyOscillator):
     @property
     def family(self) -> Family:
         """The same oscillator by its numbers, with their derivatives."""
-        return Family(MODEL.build, self.numbers | {"stops": self.stops, "release": self.release})
+        return Family(MODEL.build, completed(self.numbers) | {"stops": self.stops, "release": self.release})
 
     @property
     def described(self) -> dict[str, Parameter]:

@@ -53,6 +53,15 @@ def compliance_of(given: Mapping[str, Any], side: str) -> tuple[float, float, fl
     return tuple(stop.number(name, 0.0) for name in COMPLIANT.names["right"]) if stop.law is COMPLIANT else None
 
 
+def completed(numbers: Mapping[str, Any]) -> dict[str, Any]:
+    """The same numbers, with 0 for the damping and the preload of a compliant stop where they are left out."""
+    unsaid = {}
+    for side in ("left", "right"):
+        if law_given(numbers, side) is COMPLIANT and (side == "right" or law_given(numbers, "right") is not COMPLIANT):
+            unsaid |= {name: 0.0 for name in COMPLIANT.names[side] if numbers.get(name) is None}
+    return {**numbers, **unsaid}
+
+
 def has_compliant(given: Mapping[str, Any]) -> bool:
     """Whether numbers of a compliant stop are given."""
     return any(law_given(given, side) is COMPLIANT for side in ("right", "left"))

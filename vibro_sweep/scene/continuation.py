@@ -151,8 +151,12 @@ def _continuation_of(data: Any, name: str, text: str) -> Continuation:
     system, more = system_of(form, {first: ranges[first]} if missing else {}, kind, masses)
     problems += more
     for key, limits in ranges.items() if system is not None else ():
+        numbers = system.family.free
+        if key not in numbers:
+            problems.append(problem("continue.parameter", key, f"must be a number of `system`: {', '.join(numbers)}"))
+            continue
         problems += [line for value in limits for line in _outside(system, key, value)]
-        value = system.numbers[key]
+        value = numbers[key]
         if given[0] in _AT_SYSTEM and not limits[0] <= value <= limits[1]:
             problems.append(
                 problem(f"system.{key}", value, f"must be in continue.parameter: {limits[0]:g} .. {limits[1]:g}")

@@ -116,8 +116,7 @@ def continue_orbit(orbit: PeriodicOrbit, parameter: str, bounds: tuple[float, fl
     if not orbit.ok:
         raise ArgumentError(f"orbit: its status is {orbit.status!r}; it must be ok to be followed")
     family = family_of(orbit.system)
-    names = [name for name, value in family.numbers.items() if isinstance(value, (int, float))]
-    parameter = checked_word("parameter", parameter, names)
+    parameter = checked_word("parameter", parameter, list(family.free))
     solution = orbit._solution
     if changes_rests(solution, parameter):
         allowed = "another number: an orbit that rests after one impact does so at R = 0"

@@ -131,7 +131,7 @@ def bifurcation_curve(
     """
     check_type("special", special, SpecialPoint, "a special point of a branch or of a curve")
     family = family_of(special.orbit.system)
-    allowed = [name for name, value in family.numbers.items() if isinstance(value, (int, float))]
+    allowed = family.free
     names = tuple(parameters) if isinstance(parameters, (tuple, list)) else ()
     if not (all(isinstance(name, str) and name in allowed for name in names) and len({*names}) == len(names) == 2):
         raise ArgumentError(not_allowed("parameters", parameters, f"two of {', '.join(allowed)}"))
