@@ -76,3 +76,20 @@ def test_a_peak_that_is_a_thousand_times_narrower_than_a_step():
         assert nearest.type == "graze"
         expected = brentq(beyond, outer, fine[k], xtol=1e-15)
         assert nearest.parameters["omega"] == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.parametrize("F", [0.0, 5e-324, 1e-200])
+def test_a_mass_at_rest_has_its_distance_from_the_stop(F):
+    """No derivative of its gap says where it would turn."""
+    system = vs.Oscillator.named(
+        "one_mass", k=1, zeta=0.02, F=F, omega=0.5, R=0.8, b=2, stops="right", constant=0.5, tau=0.0
+    )
+    orbit = vs.periodic_orbit(system, itinerary="")
+    assert orbit.ok and orbit._solution.stop_distance == pytest.approx(1.5, rel=1e-14)
+
+
+def test_a_branch_ends_where_there_is_no_force():
+    system = vs.Oscillator.named("one_mass", k=1, zeta=0.02, F=0.5, omega=0.5, R=0.8, b=2, stops="right", tau=0.0)
+    branch = vs.continue_orbit(vs.periodic_orbit(system, itinerary=""), "F", (0, 2))
+    assert [one.type for one in branch.special] == ["boundary", "graze"]
+    assert branch.ends.parameters["F"] == pytest.approx(2 * abs(0.75 + 0.02j), rel=1e-13)

@@ -130,13 +130,24 @@ def press_gap(f, side, x, length, e, work):
 
 
 @jit
+def put_nothing(motion):
+    for r in range(len(motion)):
+        for k in range(motion.shape[1]):
+            motion[r, k] = np.nan
+
+
+@jit
 def press_on(f, side, length, turn, work):
     """Take work.resting[0] so far ahead, from e^{i phi} = turn on; work.resting[3]: its mean rate of change.
 
-    Returned is the derivative of the mean rate of d by the length.
+    Returned is the derivative of the mean rate of d by the length. NaN everywhere where it takes too many parts.
     """
     n, N, parts = f.A.shape[0], f.A.shape[0] // 2, parts_of(f, side, length)
     state, start, other, mean = work.resting[0], work.resting[1], work.resting[2], work.resting[3]
+    if parts == 0:
+        put_nothing(state)
+        put_nothing(mean)
+        return np.nan
     step, by_length, power = length / parts, 0.0, 1.0
     put_tables(f, side, step, work)
     copy_motion(state, start)
@@ -163,6 +174,8 @@ def least_depth(f, side, x, e, work):
     """The least depth at which the gap turns back into the stop during a contact, inf where it does not; with a release
     by force also the least force, as of row 2, where that rises again."""
     parts, nearest, state, other = parts_of(f, side, x[-1]), work.turning, work.resting[0], work.resting[1]
+    if parts == 0:
+        return np.nan
     step, cell = x[-1] / parts, work.cell
     begin_contact(f, x, e, state)
     put_tables(f, side, step, work)

@@ -13,14 +13,16 @@ from vibro_sweep.engine.simd.lanes import LANES, bits
 from vibro_sweep.engine.simd.memory import eight, put_eight
 
 SUM, MEAN = range(2)  # of `work.pressing`
+MOST_PARTS = 1 << 17  # of a contact: a longer one, of a stop with a strong damper, is not computed
 
 
 @jit
 def parts_of(f, side, length):
-    """The number of parts in which a contact is computed: their length times its rates is 0.7 at most."""
+    """The number of parts in which a contact is computed: their length times its rates is 0.7 at most. 0: too many."""
     law = law_at(f, side)
     rate = 1.0 / f.width + 1.5 * (math.sqrt(f.values[law]) + f.values[law + 1])
-    return int(abs(length) / f.numbers[OMEGA] * rate) + 1
+    count = abs(length) / f.numbers[OMEGA] * rate
+    return int(count) + 1 if count < MOST_PARTS else 0
 
 
 @jit

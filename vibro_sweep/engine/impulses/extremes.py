@@ -8,6 +8,7 @@ from vibro_sweep.engine.impulses.taylor_orders import ORDER
 from vibro_sweep.engine.simd.jit import jit
 
 OVERLAP = 1.0 + 1e-9  # of cells, or a turning point between two of them could be lost to both
+AT_REST = 2.0**-60  # of the distance from the stops: a gap that changes by less on a cell stays as it is
 MIDDLE = 4  # value in the middle of a cell, and what three derivatives there change up to its ends
 
 
@@ -103,6 +104,12 @@ def extremes_of_cell(c, length, low, high, nearest, waiting):
         power *= length
     if high - c[0] - bound > nearest[0] and c[0] - bound - low > nearest[0]:
         return False
+    room = min(high - c[0], c[0] - low)
+    if bound <= AT_REST * room:  # all derivatives are zero, or rounding
+        if not room < nearest[0]:
+            return False
+        nearest[0], nearest[1], nearest[2] = room, 0.0, 1.0 if high - c[0] < c[0] - low else -1.0
+        return True
     found = False
     waiting[0, 0], waiting[0, 1] = 0.0, length
     count = 1
