@@ -137,6 +137,17 @@ OVER_AN_END = dict(
 
 
 @pytest.mark.slow
+def test_a_contact_of_no_length_on_a_curve_of_flips_is_no_error():
+    """Without damping this curve runs along the free motion; where the contact vanishes its equations are 0/0."""
+    system = one_mass(zeta=0, b=0.3, stops="left")
+    branch = vs.continue_orbit(vs.periodic_orbit(system, itinerary="L"), "b", (0.2, 7))
+    flips = [one for one in branch.special if one.type == "flip"]
+    curves = [vs.bifurcation_curve(flip, ("b", "omega"), ((0.2, 7), (0.4, 1))) for flip in flips]
+    assert [one.parameters["b"] for one in flips] == pytest.approx([0.8095353984, 1.3879367035])
+    assert all(len(curve.points.b) > 100 for curve in curves)
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("numbers, bounds", [
     (TWICE, (-0.0276, 0.017)),
     (TWICE | dict(preload=0.01), (-0.0276, 0.017)),

@@ -102,7 +102,7 @@ def _orbits(scene: Continuation, key: str) -> list[PeriodicOrbit]:
     if scene.origin == "free":
         return [_one(periodic_orbit(scene.system, itinerary=""), scene)]
     if scene.origin == "grazing":
-        return [born.orbit for born in born_at_grazing(scene.system, periods=scene.begin)]
+        return [born.orbit for born in born_at_grazing(scene.system, periods=scene.begin) if born.orbit.ok]
     return _from_branches(scene, key)
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from vibro_sweep.analysis.continuation.rounding import DIGITS, ROWS, sensitivity
 from vibro_sweep.analysis.continuation.secant import Secant
 from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve
+from vibro_sweep.engine.continuation.problem import FOLD, TORUS
 from vibro_sweep.engine.continuation.stepper import EXAMINE
 from vibro_sweep.engine.continuation.workspace import TEST, Place
 
@@ -44,7 +45,9 @@ def aside(curve: SolutionCurve, a: Place, b: Place, place: Place, share: float, 
 
 def crossed(curve: SolutionCurve, a: Place, b: Place, impact: int) -> tuple[float, Place, float] | None:
     """(share of the secant from a to b, place, error of its parameters) where this impulse vanishes; None where it does
-    so at a pole or there are no points beside it."""
+    so at a pole, there are no points beside it, or a critical orbit has a contact whose length the equations divide."""
+    if curve.problem.rests[impact] and FOLD <= curve.problem.kind <= TORUS:
+        return None
     secant = Secant(curve, a, b, lambda place: float(place.jumps[impact]))
     reach = REACH / curve.distance(a, b)
     low, high = secant.test(a), secant.test(b)

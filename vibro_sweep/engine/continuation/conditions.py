@@ -81,7 +81,7 @@ def null_vectors(c, place, b, n, mu):
         G[n, r] = v[r] if size > 0.0 else 1.0
         v[r] = w[r] = 0.0
     G[n, n] = 0.0
-    if square(factorise(G, n + 1, work.order)) == 0.0:
+    if not square(factorise(G, n + 1, work.order)) > 0.0:
         return complex(np.nan, 0.0)
     side = work.side
     for r in range(n + 1):

@@ -57,7 +57,7 @@ def solve_on_plane(f, c, b, row):
     for r in range(size):
         for j in range(size):
             work.system[r, j] = work.ends[r, j]
-    if factorise(work.system, size, work.order) == 0.0:
+    if not abs(factorise(work.system, size, work.order)) > 0.0:
         return False
     for s in range(2 if along else 1):
         for j in range(size):

@@ -92,7 +92,7 @@ def solve(f, c, place, b):
         work.null[r] = work.ends[r, n]
         for j in range(n):
             work.system[r, j] = work.ends[r, j]
-    if factorise(work.system, n, work.order) == 0.0:
+    if not abs(factorise(work.system, n, work.order)) > 0.0:
         return False
     substitute(work.system, n, work.order, work.null)
     take_apart(f, c, b, 0, work.null, work.step_p[0], True)

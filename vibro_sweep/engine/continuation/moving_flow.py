@@ -162,7 +162,7 @@ def spread(f):
         S[r, 0] -= by_push(f, f.A, f.A, r)
         S[r, r] -= omega * omega
         f.Z[r] = f.values[size + r] - 1j * f.values[size + N + r]
-    if square(factorise(S, N, f.order)) == 0.0:
+    if not square(factorise(S, N, f.order)) > 0.0:
         return False
     substitute(S, N, f.order, f.Z)
     for r in range(N):

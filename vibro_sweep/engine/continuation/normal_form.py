@@ -128,7 +128,7 @@ def solve_order(f, c, place, b, mu, m):
     K, n, work, rows = len(place.x), f.A.shape[0], b.work[0], b.trial
     factor = factor_of(mu, m)
     put_matrix(c, b, n, factor, work.border)
-    if square(factorise(work.border, n, work.order)) == 0.0:
+    if not square(factorise(work.border, n, work.order)) > 0.0:
         return False
     for i in range(K + 1):
         for r in range(n + 2):
