@@ -97,3 +97,13 @@ def test_fold_and_flip_begin_at_the_resonant_graze():
         distance = np.abs(F - response)[near]
         power = np.polyfit(np.log(np.abs(omega - begin)[near]), np.log(distance), 1)[0]
         assert near.sum() >= 4 and power == pytest.approx(2, abs=0.05)
+
+
+@pytest.mark.slow
+def test_without_losses_no_multiplier_becomes_double():
+    """mu and 1/mu are both -1 all along a curve of flips."""
+    system = vs.Oscillator.named("one_mass", k=1, zeta=0, F=0.5, omega=0.8, b=0.3, stops="left", tau=0.0, R=1)
+    branch = vs.continue_orbit(vs.periodic_orbit(system, itinerary="L"), "b", (-1, 7))
+    flip = next(one for one in branch.special if one.type == "flip")
+    curve = vs.bifurcation_curve(flip, ("b", "omega"), ((-1, 7), (0.4, 1)))
+    assert not any(one.type == "resonance_1_2" for one in curve.special) and len(curve.special) < 10

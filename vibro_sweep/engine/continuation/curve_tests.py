@@ -8,7 +8,7 @@ from vibro_sweep.engine.continuation.certificate import certify
 from vibro_sweep.engine.continuation.chatter_sum import REACH
 from vibro_sweep.engine.continuation.conditions import keep_null_vectors
 from vibro_sweep.engine.continuation.factors import factorise, solve_rows
-from vibro_sweep.engine.continuation.lasting import corner_of, factor_of_grazes, has_rests, is_watched
+from vibro_sweep.engine.continuation.lasting import corner_of, factor_of_grazes, has_losses, has_rests, is_watched
 from vibro_sweep.engine.continuation.moving_flow import OMEGA
 from vibro_sweep.engine.continuation.normal_form import coefficient
 from vibro_sweep.engine.continuation.problem import FLIP, FOLD, GRAZE, STICK, TORUS, is_critical
@@ -96,7 +96,7 @@ def examine_curve(f, c, place, b):
         tests[TEST.last], tests[TEST.before] = (end - place.x[K - 1, n]) / reach, (end - place.x[K - 2, n]) / reach
         return True
     if is_critical(c):
-        examine_null_vectors(c, place, b, n)
+        examine_null_vectors(f, c, place, b, n)
     grazes = factor_of_grazes(f, c, place)
     # where nothing jumps at the graze this is the orbit without the contact
     watched = is_watched(f, c, c.index) and corner_of(f, c, c.index) == 0.0
@@ -119,8 +119,9 @@ def examine_curve(f, c, place, b):
 
 
 @jit
-def examine_null_vectors(c, place, b, n):
-    """Tests for a double mu, and of a fold for a cusp."""
+def examine_null_vectors(f, c, place, b, n):
+    """Tests for a double mu, and of a fold for a cusp. Without losses multipliers are pairs mu, 1/mu, and mu is double
+    all along the curve."""
     K, double, cusp = len(b.events), 0j, 0j
     scale_v, scale_w = keep_null_vectors(place, b, n)
     for i in range(K):
@@ -130,7 +131,7 @@ def examine_null_vectors(c, place, b, n):
     for r in range(n):
         double += place.w[K - 1, 2 + r] * place.v[0, r]
     if c.kind != TORUS:
-        place.tests[TEST.double] = double.real
+        place.tests[TEST.double] = double.real if has_losses(f, c) else np.nan
     if c.kind == FOLD:
         place.tests[TEST.cusp] = (cusp * scale_v * scale_v * scale_w).real
 

@@ -7,10 +7,11 @@ from vibro_sweep.engine.continuation.compliant_contact import contact, least_dep
 from vibro_sweep.engine.continuation.constrained_gap import constrain_gap, press, rest
 from vibro_sweep.engine.continuation.contact_derivative import differentiate_contact
 from vibro_sweep.engine.continuation.contact_power_series import press_series
-from vibro_sweep.engine.continuation.moving_flow import HIGH, LOW, law_at
+from vibro_sweep.engine.continuation.moving_flow import HIGH, LOW, ONE_PLUS_R_HIGH, ONE_PLUS_R_LOW, law_at
 from vibro_sweep.engine.continuation.problem import GRAZE
 from vibro_sweep.engine.simd.jit import jit
 
+ROUNDED = 1e-12  # of numbers of size 1, between polynomials
 OUTWARDS = 1e-6  # speed, in units of a branch: more than what is left of it beside a graze
 
 
@@ -45,6 +46,24 @@ def is_watched(f, c, i):
 def corner_of(f, c, i):
     """The jump of the velocity of event i by its depth, where it is watched: the least contact that ends by force."""
     return f.values[law_at(f, c.sides[i]) + 1] if f.by_force > 0 and is_watched(f, c, i) else 0.0
+
+
+@jit
+def has_losses(f, c):
+    """Whether something takes energy: a damper, an impact, or a contact."""
+    N = f.A.shape[0] // 2
+    for r in range(N):
+        for k in range(N):
+            if abs(f.A[N + r, N + k]) > ROUNDED:
+                return True
+    for i in range(len(c.sides)):
+        high = c.sides[i] > 0
+        if is_contact(c.compliant, c.sides[i]):
+            if f.values[law_at(f, c.sides[i]) + 1] > ROUNDED:
+                return True
+        elif c.sides[i] != 0.0 and 2.0 - f.numbers[ONE_PLUS_R_HIGH if high else ONE_PLUS_R_LOW] > ROUNDED:
+            return True
+    return False
 
 
 @jit
