@@ -89,7 +89,6 @@ def test_a_branch_in_the_stiffness_reaches_the_rigid_orbit():
     assert np.abs(np.sort_complex(end.multipliers) - np.sort_complex(rigid.multipliers)).max() < 1e-3
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", ["c_stop", "preload"])
 def test_numbers_of_a_stop_that_are_left_out_can_be_followed(name):
     """They are 0, and numbers like any other."""
@@ -109,6 +108,7 @@ def test_a_rigid_stop_has_no_numbers_of_a_compliant_one():
         vs.continue_orbit(orbit, "c_stop", (0, 1))
 
 
+@pytest.mark.slow
 def test_special_points_of_a_branch_are_where_the_multipliers_of_the_reference_are():
     orbit = vs.periodic_orbit(one_mass(), itinerary="R")
     branch = vs.continue_orbit(orbit, "omega", (0.3, 3))
