@@ -130,7 +130,7 @@ def press_gap(f, side, x, length, e, work):
 
 
 @jit
-def put_nothing(motion):
+def put_nan(motion):
     for r in range(len(motion)):
         for k in range(motion.shape[1]):
             motion[r, k] = np.nan
@@ -145,8 +145,8 @@ def press_on(f, side, length, turn, work):
     n, N, parts = f.A.shape[0], f.A.shape[0] // 2, parts_of(f, side, length)
     state, start, other, mean = work.resting[0], work.resting[1], work.resting[2], work.resting[3]
     if parts == 0:
-        put_nothing(state)
-        put_nothing(mean)
+        put_nan(state)
+        put_nan(mean)
         return np.nan
     step, by_length, power = length / parts, 0.0, 1.0
     put_tables(f, side, step, work)
