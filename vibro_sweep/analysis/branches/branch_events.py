@@ -27,7 +27,7 @@ SPLIT = Event("split", _stays)
 
 def ends_between(curve: SolutionCurve, bounds, a: Point, b: Point) -> list[Event]:
     """The events that may end the branch from a, which is real, to b."""
-    events, q = [], curve.orbit.family.linear
+    events = []
     for boundary, side in zip(bounds, (-1, 1), strict=True):
         if (b.value - boundary) * side > 0:
             events.append(Event("boundary", _beyond(boundary, side, a), boundary=boundary))
@@ -38,7 +38,7 @@ def ends_between(curve: SolutionCurve, bounds, a: Point, b: Point) -> list[Event
         if a.releases[i] > 0 >= b.releases[i]:
             events.append(Event("sticking", lambda point, i=i: point.releases[i]))
     if a.stays > 0 >= b.stays:
-        events.append(SPLIT if np.any(q.is_compliant(curve.orbit.sides)) else Event("sticking", _stays))
+        events.append(SPLIT if np.any(curve.orbit.contacts) else Event("sticking", _stays))
     if a.relaxed > 0 >= b.relaxed:
         events.append(Event("unrelaxed", lambda point: min(point.relaxed, 1.0)))
     if b.stop_distance <= 0 < a.stop_distance or passes_stop(b):

@@ -40,8 +40,7 @@ def criticality(solution: Solution, kind: int, name: str) -> str | None:
     if kind == FLIP and solution.torus == 1.0 and (child := born(solution, name, 1)) is not None:
         near = child.multipliers[np.argsort(np.abs(child.multipliers - 1))[:2]]
         return "sub" if np.abs(near).max() > 1 + ON_PAIR else "super"
-    resting = np.array(solution.sides)[list(solution.rests)]
-    if apart < STRONG or not np.all(solution.family.linear.is_compliant(resting)):
+    if apart < STRONG or not np.all(solution.contacts[list(solution.rests)]):
         return None
     try:
         linearised = Linearised(solution)

@@ -31,7 +31,7 @@ class PermanentContact(NamedTuple):
 def permanent_contact(s: Solution, name: str, unit: float) -> PermanentContact | None:
     """Where the one contact of this orbit at the end of its branch never ends; None where it does."""
     q = s.family.linear
-    if s.K != 1 or s.sigma != 1 or not s.rests or not q.is_compliant(s.sides[0]):
+    if s.K != 1 or s.sigma != 1 or not s.rests or not s.contacts[0]:
         return None
     side, last = s.sides[0], s.family.numbers[name]
     damping, preload = (q.c_high, q.p_high) if side > 0 else (q.c_low, q.p_low)

@@ -72,15 +72,13 @@ class Point(Place):
     @property
     def presses(self) -> np.ndarray:
         """(K,) sizes of impulses, negative for one that pulls, and lengths of contacts: at a graze one of them is 0."""
-        c = self.curve.problem
-        contacts = c.rests & self.curve.orbit.family.linear.is_compliant(c.sides)
-        return np.where(contacts, self.jumps, self.solution.pushes)
+        return np.where(self.solution.contacts, self.jumps, self.solution.pushes)
 
     @property
     def stays(self) -> float:
         """The least of what makes a rest: its length, the acceleration into the stop and the speed before it."""
-        c, q = self.curve.problem, self.curve.orbit.family.linear
-        return float(min(self.jumps[c.rests & ~q.is_compliant(c.sides)].min(initial=np.inf), self.tests[TEST.hold]))
+        rests = self.curve.problem.rests & ~self.solution.contacts
+        return float(min(self.jumps[rests].min(initial=np.inf), self.tests[TEST.hold]))
 
     @property
     def relaxed(self) -> float:

@@ -67,7 +67,7 @@ def _solution(special: SpecialPoint) -> Solution:
             raise ArgumentError("special: this sticking is not the onset at which impacts accumulate; it has no curve")
         return special._chatter.solution
     solution = special.orbit._solution
-    if not np.all(solution.family.linear.is_compliant(np.array(solution.sides)[list(solution.rests)])):
+    if not np.all(solution.contacts[list(solution.rests)]):
         raise ArgumentError("special: the mass rests on a stop; curves of such orbits cannot be followed")
     return solution
 

@@ -128,17 +128,16 @@ def _from_contacts(system, family, simulated, periods) -> PeriodicOrbit:
         return PeriodicOrbit(system, "sticking")
     contacts, impacts, P = simulated.contacts, simulated.impacts, periods * system.period
     events = [(c["t_touch"], c["side"], -c["side"] * c["v_touch"], c["t_release"]) for c in contacts]
-    events += [(i["t"], i["side"], -one_plus_R(family.linear, i["side"]) * i["v1"], None) for i in impacts]
+    events += [(i["t"], i["side"], -one_plus_R(family.linear, i["side"]) * i["v1"], np.nan) for i in impacts]
     events = sorted((one for one in events if one[0] > simulated.start_time), key=lambda one: one[0])
     if not events and len(contacts) and np.isnan(contacts["t_release"][-1]):
         return PeriodicOrbit(system, "permanent_contact")
     events = [one for one in events if one[0] < events[0][0] + P * (1 - 1e-9)]
-    rests = tuple(k for k, one in enumerate(events) if one[3] is not None)
-    t, sides, D = (tuple(one[i] for one in events) for i in range(3))
-    u = np.array([*t, *D, *(events[k][3] for k in rests)], float)
-    if not np.all(np.isfinite(u)):
+    t, sides, D, ends = np.array(events, float).reshape(-1, 4).T
+    guess = Solution(family, 1, 2 * periods, (), np.empty(0)).with_events(sides, t, D, ends)
+    if len(guess.rests) < np.count_nonzero(guess.contacts) or not np.all(np.isfinite(guess.u)):
         return PeriodicOrbit(system, "not_converged")
-    return found_orbit(system, Solution(family, 1, 2 * periods, tuple(map(int, sides)), u, 0.0, rests).corrected())
+    return found_orbit(system, guess.corrected())
 
 
 def _from_rests(system, family, simulated, periods) -> PeriodicOrbit:

@@ -3,7 +3,6 @@
 The mass comes back to the stop within a contact, without speed. Orbits with one contact and orbits with two meet there.
 """
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,8 +15,8 @@ ROUNDING = 1e-14  # of times, in parts of the period
 
 def flights_between(s: "Solution") -> np.ndarray:
     """(K,) times from the end of each contact to the next one where that is with the same stop, else inf."""
-    sides, times, _, ends = _events(s)
-    following, pressed = np.append(times[1:], times[:1] + s.P), s.family.linear.is_compliant(sides)
+    sides, times, _, ends = s.events
+    following, pressed = np.append(times[1:], times[:1] + s.P), s.contacts
     same = np.append(sides[1:], s.sigma * sides[:1]) == sides
     return np.where(pressed & np.roll(pressed, -1) & same & (s.K > 1), following - ends, np.inf)
 
@@ -36,38 +35,25 @@ def joined(s: "Solution", index: int) -> "Solution":
     """The motion in which this contact and the next one are one."""
     if index == s.K - 1:  # the next one is the first
         return joined(turned(s, 1), 0)
-    *others, ends = _events(s)
-    return _of_events(s, *(np.delete(values, index + 1) for values in others), np.delete(ends, index))
+    *others, ends = s.events
+    return s.with_events(*(np.delete(values, index + 1) for values in others), np.delete(ends, index))
 
 
 def parted(s: "Solution", index: int, time: float) -> "Solution":
     """The motion in which this contact is two: it ends at this time, without speed, and the next one begins."""
-    sides, times, jumps, ends = _events(s)
+    sides, times, jumps, ends = s.events
     inserted = (
         np.insert(sides, index, sides[index]),
         np.insert(times, index + 1, time),
         np.insert(jumps, index + 1, 0.0),
     )
-    return _of_events(s, *inserted, np.insert(ends, index, time))
+    return s.with_events(*inserted, np.insert(ends, index, time))
 
 
 def turned(s: "Solution", by: int) -> "Solution":
     """The same orbit with its last event as the first, by = 1, or its first event as the last, by = -1."""
     turns = np.zeros(s.K)
     turns[0 if by > 0 else -1] = -by
-    sides, times, jumps, ends = (np.roll(values, by) for values in _events(s))
+    sides, times, jumps, ends = (np.roll(values, by) for values in s.events)
     signs = float(s.sigma) ** turns
-    return _of_events(s, signs * sides, times + turns * s.P, signs * jumps, ends + turns * s.P)
-
-
-def _events(s: "Solution") -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """(K,) sides, times, velocity jumps and ends, NaN of what does not last."""
-    ends = np.full(s.K, np.nan)
-    ends[list(s.rests)] = s.ends
-    return np.array(s.sides, int), s.times, s.jumps, ends
-
-
-def _of_events(s: "Solution", sides, times, jumps, ends) -> "Solution":
-    lasting = np.isfinite(ends)
-    u, rests = np.concatenate([times, jumps, ends[lasting]]), tuple(np.flatnonzero(lasting).tolist())
-    return replace(s, sides=tuple(int(side) for side in sides), u=u, rests=rests)
+    return s.with_events(signs * sides, times + turns * s.P, signs * jumps, ends + turns * s.P)

@@ -103,8 +103,7 @@ class PeriodicOrbit(Result):
         result = np.empty(0, STICKING)
         if self._solution is not None and self._solution.rests:
             s = self._solution.whole()
-            q = s.family.linear
-            rests, T = [k for k in s.rests if not q.is_compliant(s.sides[k])], forcing_period(q)
+            rests, T = [k for k in s.rests if not s.contacts[k]], forcing_period(s.family.linear)
             first, shift = self._frame or self._canonical_frame
             later = np.where(np.array(rests) < first, self.period * T, 0.0) - shift * T
             result = np.empty(len(rests), STICKING)
@@ -120,16 +119,15 @@ class PeriodicOrbit(Result):
         if self._solution is None or not self._solution.rests:
             return np.empty(0, CONTACT)
         s = self._solution.whole()
-        q, rests, times = s.family.linear, np.array(s.rests), self._whole[0]
+        q, times = s.family.linear, self._whole[0]
         first, _ = self._frame or self._canonical_frame
-        pressed = q.is_compliant(np.array(s.sides)[rests])
-        which = rests[pressed]
+        which = np.flatnonzero(s.contacts)
         which = which[np.argsort((which - first) % s.K)]
-        lengths = dict(zip(s.rests, s.ends - s.times[rests], strict=True))
+        _, began, _, ends = s.events
         begins, sides = times[(which - first) % s.K], np.array(s.sides)[which]
         states = s.states[which].copy()
         states[:, 0] = q.stop(sides)
-        return contacts_between(q, begins, np.array([lengths[k] for k in which.tolist()]), sides, states)
+        return contacts_between(q, begins, (ends - began)[which], sides, states)
 
     @property
     def itinerary(self) -> str:

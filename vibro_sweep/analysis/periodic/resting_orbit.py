@@ -29,7 +29,7 @@ class RestingOrbit:
             e.workspace.events,
             e.planes[0]["Z"],
         )
-        self.pressed = self.q.is_compliant(solution.sides)  # of each event, whether it is on a compliant stop
+        self.pressed = solution.contacts
         e.move()
         e.take_solution(solution)
         self._close()

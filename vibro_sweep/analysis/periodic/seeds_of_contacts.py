@@ -47,11 +47,10 @@ def stiffer(q: Linear, times: float) -> Linear:
 
 def with_contacts(family: Family, solution: Solution, t, speeds) -> Solution:
     """A guess with impacts or contacts at these times, with these gap velocities before them."""
-    q, sides = family.linear, np.array(solution.sides)
-    rests = tuple(np.flatnonzero(q.is_compliant(sides)).tolist())
-    ends = [t[k] + of_free_mass(q, sides[k])[1] for k in rests]
-    u = np.concatenate([t, -one_plus_R(q, sides) * speeds, ends])
-    return replace(solution, family=family, u=u, rests=rests)
+    q, sides, there = family.linear, np.array(solution.sides, int), replace(solution, family=family)
+    lengths = {side: of_free_mass(q, side)[1] if q.is_compliant(side) else np.nan for side in (1, -1)}
+    ends = t + np.array([lengths[side] for side in sides.tolist()])
+    return there.with_events(sides, t, -one_plus_R(q, sides) * speeds, ends)
 
 
 def softened(family: Family, found: Solution) -> Solution | None:

@@ -9,8 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from vibro_sweep.analysis.periodic.contact_numbers import one_plus_R
-from vibro_sweep.analysis.periodic.seeds_of_contacts import of_free_mass
+from vibro_sweep.analysis.periodic.seeds_of_contacts import with_contacts
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.analysis.periodic.steady_gap import steady_gap
 from vibro_sweep.engine.impulses.free_modes import has_free_gap
@@ -54,10 +53,10 @@ def _touching(start: Solution) -> Solution | None:
         if sides != start.sides or abs(events[first + K][0] - times[0] - start.P) > 1e-9 * start.P:
             continue
         speeds = [side * abs(swing) * q.omega * math.sin(angle[side]) for side in sides]
-        rests = tuple(np.flatnonzero(q.is_compliant(np.array(sides))).tolist())
-        ends = [times[k] + min(2 * angle[sides[k]] / q.omega, of_free_mass(q, sides[k])[1]) for k in rests]
-        u = np.concatenate([times, -one_plus_R(q, sides) * speeds, ends])
-        return replace(start, u=u, rests=rests)
+        guess = with_contacts(start.family, start, times, np.array(speeds))
+        *events, ends = guess.events
+        passed = times + 2 * np.array([angle[side] for side in sides]) / q.omega
+        return guess.with_events(*events, np.minimum(ends, passed))
     return None
 
 

@@ -1,6 +1,5 @@
 """A solution of the equations of periodic orbits, and what follows from it."""
 
-from bisect import bisect_left
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations, groupby
@@ -73,6 +72,24 @@ class Solution:
     def ends(self) -> np.ndarray:
         """The ends of the rests."""
         return self.u[2 * self.K : 2 * self.K + len(self.rests)]
+
+    @cached_property
+    def contacts(self) -> np.ndarray:
+        """(K,) whether events are contacts with compliant stops."""
+        return self.family.linear.is_compliant(np.array(self.sides, int))
+
+    @property
+    def events(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """(K,) sides, times, velocity jumps and ends, NaN of what does not last."""
+        ends = np.full(self.K, np.nan)
+        ends[list(self.rests)] = self.ends
+        return np.array(self.sides, int), self.times, self.jumps, ends
+
+    def with_events(self, sides, times, jumps, ends) -> "Solution":
+        """A solution, or a guess, with these `events`."""
+        lasting = np.isfinite(ends)
+        u, rests = np.concatenate([times, jumps, ends[lasting]]), tuple(np.flatnonzero(lasting).tolist())
+        return replace(self, sides=tuple(int(side) for side in sides), u=u, change=0.0, rests=rests)
 
     @cached_property
     def hold(self) -> float:
@@ -198,14 +215,9 @@ class Solution:
 
     def with_touch(self, index: int, time: float, side: int) -> "Solution":
         """The same motion with one impact more, which has no speed."""
-        sides = (*self.sides[:index], int(side), *self.sides[index:])
-        rests, ends = [k + (k >= index) for k in self.rests], self.ends
-        if self.family.linear.is_compliant(side):  # a contact, which ends as it begins
-            place = bisect_left(rests, index)
-            rests.insert(place, index)
-            ends = np.insert(ends, place, time)
-        u = np.concatenate([np.insert(self.times, index, time), np.insert(self.jumps, index, 0.0), ends])
-        return replace(self, sides=sides, u=u, change=0.0, rests=tuple(rests))
+        end = time if self.family.linear.is_compliant(side) else np.nan  # a contact ends as it begins
+        new = zip(self.events, (side, time, 0.0, end), strict=True)
+        return self.with_events(*(np.insert(values, index, value) for values, value in new))
 
     def whole(self) -> "Solution":
         """The same orbit over its whole period, sigma = +1."""

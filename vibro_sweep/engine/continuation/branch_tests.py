@@ -6,7 +6,7 @@ import numpy as np
 
 from vibro_sweep.engine.continuation.certificate import certify
 from vibro_sweep.engine.continuation.curve_tests import changes_sign, determinant, eigenvalues_of, passes_birth
-from vibro_sweep.engine.continuation.lasting import factor_of_grazes, is_contact
+from vibro_sweep.engine.continuation.lasting import factor_of_grazes, sign_of_events
 from vibro_sweep.engine.continuation.moving_flow import OMEGA, ONE_PLUS_R_HIGH, ONE_PLUS_R_LOW
 from vibro_sweep.engine.continuation.workspace import BRANCH_TESTS, TEST
 from vibro_sweep.engine.impulses.pairs import ON_PAIR, ON_SQUARE, exchanged
@@ -30,8 +30,6 @@ def examine_branch(f, c, place, b):
     for i in range(len(b.events)):
         if c.rests[i]:
             x[TEST.hold] = min(x[TEST.hold], b.events[i].hold)
-            if not is_contact(c.compliant, c.sides[i]):
-                x[TEST.hold] = min(x[TEST.hold], c.sides[i] * b.events[i].motion[0])
         elif f.numbers[ONE_PLUS_R_HIGH if c.sides[i] > 0 else ONE_PLUS_R_LOW] == 1.0:
             after = b.events[i].motion[1] + f.numbers[OMEGA] * b.events[i].bend[n // 2]
             x[TEST.release] = min(x[TEST.release], -c.sides[i] * after)
@@ -106,19 +104,16 @@ def crosses_over(c, a, b):
     beside each other.
 
     sign(dp/ds) (-1)^(number of multipliers > 1) prod_i sign(D_i) is the same all along a branch: two of the three
-    change at folds, and at grazes; at a birth the first alone. Where two compliant contacts have vanished it is not
-    known; then the step must be shorter.
+    change at folds, and at grazes; at a birth the first alone. Where the last is not known the step must be shorter.
     """
-    x, y, beyond = a.tests, b.tests, 0.0
+    x, y = a.tests, b.tests
     if x[TEST.above] < 0.0 or y[TEST.above] < 0.0 or x[TEST.on_circle] > 0.0 or y[TEST.on_circle] > 0.0:
         return False
-    for i in range(len(a.x)):
-        if not (b.x[i, -1] if c.rests[i] else -c.sides[i] * b.x[i, -1]) > 0.0:
-            beyond += 1.0
-    if beyond > 1.0 and c.compliant is not None:
+    sign, crossed = sign_of_events(c, b), (x[TEST.above] + y[TEST.above]) % 2.0 != 0.0
+    if sign == 0.0:
         return True
-    changes = x[TEST.above] + y[TEST.above] + beyond
-    return (a.tangent_p[0] * b.tangent_p[0] < 0.0) != (changes % 2.0 != 0.0) and not passes_birth(c, a, b)
+    turns = a.tangent_p[0] * b.tangent_p[0] < 0.0
+    return turns != (crossed != (sign < 0.0)) and not passes_birth(c, a, b)
 
 
 @jit

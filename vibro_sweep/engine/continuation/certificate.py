@@ -6,11 +6,9 @@ import numpy as np
 
 from vibro_sweep.engine.continuation.chatter_sum import NEXT
 from vibro_sweep.engine.continuation.flight_tables import polynomial
-from vibro_sweep.engine.continuation.lasting import forced, hold_of, is_contact, speed_of_release
-from vibro_sweep.engine.continuation.moving_flow import HIGH, LOW, OMEGA, ONE_PLUS_R_HIGH, ONE_PLUS_R_LOW
+from vibro_sweep.engine.continuation.lasting import hold_of, leaves_slowly, speed_after, take_releases
+from vibro_sweep.engine.continuation.moving_flow import HIGH, LOW, OMEGA
 from vibro_sweep.engine.continuation.problem import GRAZE, STICK
-from vibro_sweep.engine.continuation.relaxation import time_to_spare
-from vibro_sweep.engine.continuation.workspace import TEST
 from vibro_sweep.engine.impulses.extremes import OVERLAP, extremes_of_cell, turns_near
 from vibro_sweep.engine.impulses.taylor_orders import ORDER
 from vibro_sweep.engine.simd.jit import jit
@@ -32,10 +30,7 @@ def certify(f, c, place, b):
         far = np.inf
     work.nearest[0] = far
     look(f, c, place, b)
-    if c.compliant is not None:
-        place.tests[TEST.relaxed], place.tests[TEST.forced] = time_to_spare(f, c, place, b), forced(b)
-    else:
-        place.tests[TEST.relaxed], place.tests[TEST.forced] = np.inf, 0.0
+    take_releases(f, c, place, b)
     if work.nearest[0] == far and far < np.inf:
         work.nearest[0] = np.inf
         look(f, c, place, b)
@@ -78,7 +73,6 @@ def look(f, c, place, b):
     aside = ASIDE / omega
     for i in range(K):
         begin, length = place.x[i, n], b.events[i].length
-        one_plus_R = ONE_PLUS_R_HIGH if c.sides[i] > 0 else ONE_PLUS_R_LOW
         for r in range(n):
             y[r] = b.events[i].after[r]
         if c.kind >= GRAZE:
@@ -91,7 +85,7 @@ def look(f, c, place, b):
         if c.rests[i]:
             b.events[i].hold = hold_of(f, c.compliant, c.sides[i], place.x[i], b.events[i], work)
             begin += place.x[i, n + 1]
-        if c.rests[i] and not is_contact(c.compliant, c.sides[i]):
+        if leaves_slowly(c, i):
             away = apart(f, y, cmath.exp(1j * begin), length, work.cell)
             polynomial(n, f.series, away, work.other[0])
             shift(f, work.other[0], y, other)
@@ -103,12 +97,8 @@ def look(f, c, place, b):
             if width > 0.0 and may_turn(f, y, e, f.numbers[LOW], f.numbers[HIGH], nearest[0]):
                 e = cmath.exp(1j * (begin + omega * k * f.width))  # products have rounded from cell to cell
                 expand_gap(f, y, e, work.cell)
-                if (
-                    k == 0 and f.numbers[one_plus_R] == 1.0 and not c.rests[i]
-                ):  # not even rounding is left of the velocity
-                    work.cell[1] = 0.0
-                if c.compliant is not None and k == 0 and b.events[i].depth != 0.0:
-                    work.cell[1] = speed_of_release(f, c.sides[i], b.events[i].depth)
+                if k == 0:
+                    work.cell[1] = speed_after(f, c, i, b.events[i], work.cell[1])
                 if extremes_of_cell(work.cell, width, f.numbers[LOW], f.numbers[HIGH], nearest, work.waiting):
                     nearest[1] = begin + omega * (nearest[1] + k * f.width)
             if k < cells:

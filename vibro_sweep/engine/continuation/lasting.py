@@ -3,12 +3,16 @@
 `compliant` is `Problem.compliant`. Where it is None the branches with contacts are not compiled.
 """
 
+import numpy as np
+
 from vibro_sweep.engine.continuation.compliant_contact import contact, least_depth, press_gap
 from vibro_sweep.engine.continuation.constrained_gap import constrain_gap, press, rest
 from vibro_sweep.engine.continuation.contact_derivative import differentiate_contact
 from vibro_sweep.engine.continuation.contact_power_series import press_series
 from vibro_sweep.engine.continuation.moving_flow import HIGH, LOW, ONE_PLUS_R_HIGH, ONE_PLUS_R_LOW, law_at
 from vibro_sweep.engine.continuation.problem import GRAZE
+from vibro_sweep.engine.continuation.relaxation import time_to_spare
+from vibro_sweep.engine.continuation.workspace import TEST
 from vibro_sweep.engine.simd.jit import jit
 
 ROUNDED = 1e-12  # of numbers of size 1, between polynomials
@@ -78,11 +82,27 @@ def contacts_begin(c, place, b):
 
 
 @jit
-def speed_of_release(f, side, depth):
-    """The speed with which a contact ends by its force, at this depth: towards the other stop, whatever rounding is
-    left of the motion's."""
-    law = law_at(f, side)
-    return -side * (f.values[law] * depth + f.values[law + 2]) / f.values[law + 1]
+def speed_after(f, c, i, e, v):
+    """The velocity v after event i; where the law of the contact gives it, without the motion's rounding."""
+    if c.rests[i]:
+        if c.compliant is not None and e.depth != 0.0:  # k s + c s' + p = 0
+            law = law_at(f, c.sides[i])
+            return -c.sides[i] * (f.values[law] * e.depth + f.values[law + 2]) / f.values[law + 1]
+    elif f.numbers[ONE_PLUS_R_HIGH if c.sides[i] > 0 else ONE_PLUS_R_LOW] == 1.0:
+        return 0.0
+    return v
+
+
+@jit
+def leaves_slowly(c, i):
+    """Whether the gap leaves its stop like the third power of time after event i: it has rested there."""
+    return c.rests[i] and not is_contact(c.compliant, c.sides[i])
+
+
+@jit
+def leaves_at_stop(c, i, e):
+    """Whether event i is a contact that ends as it begins, with the gap at its stop."""
+    return c.rests[i] and is_contact(c.compliant, c.sides[i]) and e.depth == 0.0
 
 
 @jit
@@ -94,6 +114,24 @@ def forced(b):
         if b.events[i].depth != 0.0:
             count += 1.0
     return count
+
+
+@jit
+def take_releases(f, c, place, b):
+    """The tests `relaxed` and `forced`, of releases by force."""
+    place.tests[TEST.relaxed], place.tests[TEST.forced] = np.inf, forced(b)
+    if c.compliant is not None:
+        place.tests[TEST.relaxed] = time_to_spare(f, c, place, b)
+
+
+@jit
+def sign_of_events(c, place):
+    """The sign of prod_i D_i, of impulses and lengths; 0.0 where it is not known: two compliant contacts vanished."""
+    sign, negative = 1.0, 0
+    for i in range(len(place.x)):
+        if not (place.x[i, -1] if c.rests[i] else -c.sides[i] * place.x[i, -1]) > 0.0:
+            sign, negative = -sign, negative + 1
+    return 0.0 if negative > 1 and c.compliant is not None else sign
 
 
 @jit
@@ -136,7 +174,7 @@ def last_series(f, compliant, side, x, e, y, work):
 def has_rests(c):
     """Whether the orbit rests on a rigid stop."""
     for i in range(len(c.rests)):
-        if c.rests[i] and not is_contact(c.compliant, c.sides[i]):
+        if leaves_slowly(c, i):
             return True
     return False
 
@@ -158,10 +196,11 @@ def state_within(f, compliant, side, x, delay, e, work, state):
 
 @jit
 def hold_of(f, compliant, side, x, e, work):
-    """What keeps it up: the least acceleration into the stop during a rest, the least depth of a contact."""
+    """What keeps it up: the least depth of a contact; of a rest the least acceleration into the stop, and the speed
+    before it."""
     if compliant is None:
-        return press(f, side, x, e, work)
+        return min(press(f, side, x, e, work), side * e.motion[0])
     elif is_contact(compliant, side):
         return least_depth(f, side, x, e, work)
     else:
-        return press(f, side, x, e, work)
+        return min(press(f, side, x, e, work), side * e.motion[0])

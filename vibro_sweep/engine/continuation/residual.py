@@ -23,7 +23,7 @@ import math
 from vibro_sweep.engine.continuation.chatter_tail import end_of_chatter, put_tail
 from vibro_sweep.engine.continuation.constrained_gap import put_rest
 from vibro_sweep.engine.continuation.flight_tables import flight
-from vibro_sweep.engine.continuation.lasting import corner_of, is_contact, is_watched, last
+from vibro_sweep.engine.continuation.lasting import corner_of, is_watched, last, leaves_at_stop
 from vibro_sweep.engine.continuation.moving_flow import HIGH, LOW, OMEGA, ONE_PLUS_R_HIGH, ONE_PLUS_R_LOW
 from vibro_sweep.engine.continuation.problem import STICK, width_of
 from vibro_sweep.engine.continuation.reflections import copy_row, reflect
@@ -163,9 +163,8 @@ def hardly_leaves(f, c, b, i):
     """Whether the mass leaves its stop so shortly between this contact and the next that states would lose its
     digits."""
     j = i + 1 if i + 1 < len(c.sides) else 0
-    same = c.sides[j] == (c.sides[i] if j > 0 else c.sigma * c.sides[i]) and c.rests[i] and c.rests[j] and i != j
-    pressed = same and is_contact(c.compliant, c.sides[i]) and b.events[i].depth == 0.0
-    return pressed and abs(b.events[i].length) < SHORT * f.width
+    same = c.sides[j] == (c.sides[i] if j > 0 else c.sigma * c.sides[i]) and i != j
+    return same and leaves_at_stop(c, i, b.events[i]) and abs(b.events[i].length) < SHORT * f.width
 
 
 @jit
@@ -200,13 +199,12 @@ def fly_through(f, c, place, b):
             e, following = b.events[i], b.events[i + 1]
             e.defect[0] = following.gap - e.gap - grown(f, e, e.turn, 0)
             e.defect[n // 2] = following.motion[0] - e.motion[0] - place.x[i, n + 1] - grown(f, e, e.turn, n // 2)
-    if c.compliant is not None:
-        for i in range(K):
-            if hardly_leaves(f, c, b, i):
-                e, j = b.events[i], i + 1 if i + 1 < K else 0
-                gap = b.events[j].gap - f.numbers[HIGH if c.sides[j] > 0 else LOW]
-                rise = grown(f, e, e.turn * cmath.exp(1j * place.x[i, n + 1]), 0)
-                e.defect[0] = (gap if j > 0 else c.sigma * gap) - rise
+    for i in range(K):
+        if hardly_leaves(f, c, b, i):
+            e, j = b.events[i], i + 1 if i + 1 < K else 0
+            gap = b.events[j].gap - f.numbers[HIGH if c.sides[j] > 0 else LOW]
+            rise = grown(f, e, e.turn * cmath.exp(1j * place.x[i, n + 1]), 0)
+            e.defect[0] = (gap if j > 0 else c.sigma * gap) - rise
 
 
 @jit
@@ -229,9 +227,7 @@ def eliminate(f, c, place, b, watched):
         for r in range(n, 2 * n + 2):
             for j in range(width):
                 panel[r, j] = 0.0
-        corner = 0.0
-        if c.compliant is not None and not watched:
-            corner = corner_of(f, c, i)
+        corner = 0.0 if watched else corner_of(f, c, i)
         put_rows(f, law, c.sides[i], corner, x, e, panel)
         put_flight(f, law, e, panel)
         if law == REST:
