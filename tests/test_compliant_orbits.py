@@ -238,6 +238,20 @@ def test_orbits_with_short_contacts_are_found(law, depth):
     np.testing.assert_allclose(orbit.multipliers, known.multipliers, rtol=0, atol=1e-9)
 
 
+@pytest.mark.parametrize(("c_stop", "status"), [(2e4, "ok"), (1e5, "too_stiff"), (1e9, "too_stiff")])
+def test_stops_with_a_strong_damper(c_stop, status):
+    """Contacts of which a forcing period is 4e5 cells were found, and could not be shown; longer ones are not found."""
+    orbit = vs.periodic_orbit(one_mass(k_stop=29, c_stop=c_stop), itinerary="R")
+    assert orbit.status == status
+    if orbit.ok:
+        (contact,), P = orbit.contacts, orbit.period * orbit.system.period
+        times = np.array([contact["t_touch"], contact["t_release"]])
+        run = vs.simulate(orbit.system, orbit.state, 2 * orbit.period)
+        np.testing.assert_allclose(orbit.sample([P])[0], run.section[-1], rtol=0, atol=1e-9)
+        known = np.array([[one["t_touch"], one["t_release"]] for one in run.contacts])
+        assert np.abs(known - times - P * np.round((known[:, :1] - times[0]) / P)).max() < 1e-9
+
+
 @pytest.mark.slow
 def test_orbits_that_attract_are_found_by_their_contacts():
     """Random oscillators, at clearances from just below the graze to a third of it."""

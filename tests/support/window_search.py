@@ -1,6 +1,7 @@
 """A search for windows that are wrong: random sweeps with half and twice the values, and with other starts.
 
 python tests/support/window_search.py 0 100            # seeds; prints what disagrees, and a summary
+python tests/support/window_search.py 0 100 compliant  # with compliant stops; seeds from 1000 on with `release: force`
 """
 
 import itertools
@@ -14,6 +15,8 @@ import numpy as np
 import vibro_sweep as vs
 from support import conditions
 from support.branch_search import Report, summary
+from support.compliant_branches import BY_FORCE, drawn_stops
+from support.compliant_branches import MODELS as COMPLIANT
 from support.drawn_branches import MODELS, drawn_number, drawn_oscillator
 from support.windows import check_end
 from vibro_sweep import store
@@ -26,7 +29,7 @@ from vibro_sweep.model.outcomes import REASONS
 NEAR_ENDS = (1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12)  # shares of a window from its ends
 CLOSE = 1e-9  # of the range: ends of one window differ by less
 NARROW = 1e-11  # of the range: a window found from a value of a sweep is wider
-_CODES = {name: code for code, name in enumerate(REASONS)}
+BESIDE = 1e-8  # of a state: the step of differences
 
 
 def swept(system, name, values, seed, folder):
@@ -45,10 +48,36 @@ def at(window, value):
     return orbit_of(system, solution_in(window._arrays, float(value), system))
 
 
-def study(seed: int) -> Report:
+def drawn(seed: int, compliant: bool, rng):
+    """(model, oscillator) of a search."""
+    if not compliant:
+        model = MODELS[seed % len(MODELS)]
+        return model, drawn_oscillator(model, rng)
+    model = COMPLIANT[seed % len(COMPLIANT)]
+    return model, drawn_stops(model, rng, "displacement" if seed < BY_FORCE else "force")
+
+
+def off_and_largest(orbit) -> tuple[float, float]:
+    """By how much an orbit misses itself after its period, and its largest multiplier in size, not as the core says:
+    of rigid stops by saltation matrices, of compliant ones by differences of simulations."""
+    if not orbit.system.linear.compliant:
+        found, *_ = conditions.at_point(orbit)
+        return float(found.off[0]), float(np.abs(np.linalg.eigvals(found.matrix[0])).max())
+
+    def flown(state):
+        return vs.simulate(orbit.system, state, orbit.period).section[-1]
+
+    ends = [[flown(orbit.state + sign * BESIDE * one) for sign in (1, -1)] for one in np.eye(len(orbit.state))]
+    columns = [(there - back) / (2 * BESIDE) for there, back in ends]
+    size = np.abs(orbit.state).max()
+    return float(np.abs(flown(orbit.state) - orbit.state).max() / size), float(
+        np.abs(np.linalg.eigvals(np.array(columns).T)).max()
+    )
+
+
+def study(seed: int, compliant: bool = False) -> Report:
     rng, report = np.random.default_rng([seed, 1]), Report()
-    model = MODELS[seed % len(MODELS)]
-    system = drawn_oscillator(model, rng)
+    model, system = drawn(seed, compliant, rng)
     name, (lo, hi) = drawn_number(system, rng)
     count = 2 * int(rng.integers(6, 11)) + 1
     values = np.linspace(lo, hi, count) if hi > lo else None
@@ -91,11 +120,12 @@ def one_window(report, wrong, window, size) -> None:
     value = getattr(orbit.system, window.parameter)
     if not window.lo <= value <= window.hi:
         wrong("orbit outside", f"{words}: {value!r}")
-    for kind, more in conditions.not_reduced(orbit, window.parameter):
+    compliant = orbit.system.linear.compliant
+    for kind, more in [] if compliant else conditions.not_reduced(orbit, window.parameter):
         wrong(kind, f"{words}: {more}")
     for special in (window.lower, window.upper):
         report.counted[special.type] += 1
-        far, more = conditions.distance(special)
+        far, more = (np.nan, "") if compliant else conditions.distance(special)
         if not np.isnan(far) and not far < conditions.MEETS:
             wrong(f"condition of {special.type}", f"{words}: {far:.1e}, {more}")
     if orbit.sticking.size:
@@ -115,11 +145,10 @@ def one_window(report, wrong, window, size) -> None:
             report.counted["not found inside"] += 1
             continue
         report.counted["inside"] += 1
-        found, *_ = conditions.at_point(inner)
-        largest = np.abs(np.linalg.eigvals(found.matrix[0])).max()
-        if not found.off[0] < 1e-7 or not inner.ok:
-            wrong("not an orbit inside", f"{words}: at {value!r} off {found.off[0]:.1e}, {inner.status}")
-        elif not largest < 1 + 1e-9:
+        off, largest = off_and_largest(inner)
+        if not off < 1e-7 or not inner.ok:
+            wrong("not an orbit inside", f"{words}: at {value!r} off {off:.1e}, {inner.status}")
+        elif not largest < 1 + (1e-4 if compliant else 1e-9):
             wrong("not stable inside", f"{words}: at {value!r} {largest!r}")
 
 
@@ -154,11 +183,8 @@ def other_starts(report, wrong, window, bounds) -> None:
         lo, hi = result["special_value"][[0, -1]].tolist()
         if max(abs(lo - window.lo), abs(hi - window.hi)) <= CLOSE * size:
             continue
-        found = solution_in(result, (lo + hi) / 2, inner.system.replace(**{window.parameter: (lo + hi) / 2}))
-        matrix = conditions.at_point(orbit_of(inner.system.replace(**{window.parameter: (lo + hi) / 2}), found))[
-            0
-        ].matrix[0]
-        stable = np.abs(np.linalg.eigvals(matrix)).max() < 1
+        there = inner.system.replace(**{window.parameter: (lo + hi) / 2})
+        stable = off_and_largest(orbit_of(there, solution_in(result, (lo + hi) / 2, there)))[1] < 1
         if beside and stable and min(abs(lo - value), abs(hi - value)) <= CLOSE * size:
             report.counted["neighbours"] += 1  # the window that begins where this one ends
         else:
@@ -203,7 +229,7 @@ def same_window(report, wrong, a, b, size) -> None:
     if not hi - lo > NARROW * size:
         return
     orbits = [at(one, (lo + hi) / 2) for one in (a, b)]
-    speeds = [np.sort(np.abs(orbit.impacts["v1"])) for orbit in orbits]
+    speeds = [np.sort(np.abs([*one.impacts["v1"], *one.contacts["v_touch"]])) for one in orbits]
     if not all(orbit.ok for orbit in orbits) or np.ptp(speeds, axis=0).max(initial=0.0) > 1e-7 * np.max(
         speeds, initial=0.0
     ):
@@ -223,7 +249,7 @@ if __name__ == "__main__":
     done = []
     for seed in range(first, last):
         begun = time.monotonic()
-        done.append(study(seed))
+        done.append(study(seed, compliant=sys.argv[3:] == ["compliant"]))
         print(
             "#",
             seed,

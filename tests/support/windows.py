@@ -48,8 +48,9 @@ def check_end(window, special, outwards: int) -> str | None:
     if not within.stable:
         return f"inside: {np.abs(within.multipliers).max()}"
     flown = vs.simulate(inside, within.state, within.period)
-    if len(flown.impacts) != len(window.itinerary) or np.abs(flown.section[-1] - within.state).max() > 1e-5:
-        return f"inside: flown, {len(flown.impacts)} impacts"
+    met = len(flown.impacts) + np.count_nonzero(flown.contacts["t_touch"] > flown.start_time)
+    if met != len(window.itinerary) or np.abs(flown.section[-1] - within.state).max() > 1e-5:
+        return f"inside: flown, {met} impacts and contacts"
     if special.type in ("flip", "pitchfork", "neimark_sacker"):
         near = beyond.ok and _distance(within, beyond) < 1e-5
         return None if near and not beyond.stable else f"outside: {beyond.status}, stable {beyond.stable}"
@@ -67,9 +68,11 @@ def _distance(a, b) -> float:
 
 
 def _near(window, special, step: float):
-    """The orbit at an end; at a fold, where orbits move like the square root, the one `step` beside it, roughly."""
+    """The orbit at an end; the one `step` beside it, roughly, at a fold and where a contact begins smoothly: there they
+    move like the square root."""
     arrays, (point, beside) = window._arrays, (0, 1) if special is window.lower else (-1, -2)
-    share = np.sqrt(step / abs(arrays["value"][beside] - arrays["value"][point])) if special.type == "fold" else 0.0
+    root = special.type == "fold" or (special.type == "graze" and special.orbit.system.linear.compliant)
+    share = np.sqrt(step / abs(arrays["value"][beside] - arrays["value"][point])) if root else 0.0
     parts = [
         (1 - share) * arrays[name][point] + share * arrays[name][beside]
         for name in ("impact_t", "impact_v", "impact_t_off")

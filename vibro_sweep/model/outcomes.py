@@ -40,8 +40,8 @@ ORBITS = {  # `PeriodicOrbit.status`
         "Give the mode some damping, or change `omega` a little.",
     ),
     "too_stiff": Outcome(
-        "the rates of the oscillator are too far apart",
-        "Leave out the fastest modes, or give them less damping: see `rates_too_far_apart` above.",
+        "the rates of the oscillator, or of a contact with its stop, are too far apart",
+        "Leave out the fastest modes, or give them, or the stop, less damping: see `rates_too_far_apart` above.",
     ),
 }
 

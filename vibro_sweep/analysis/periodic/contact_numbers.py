@@ -4,8 +4,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from vibro_sweep.engine.continuation.contact_map import FINER, MOST_PARTS
+from vibro_sweep.engine.continuation.moving_flow import NUMBERS
 from vibro_sweep.engine.impulses.flow import contact_coordinates
-from vibro_sweep.model.linear import STEP, Linear
+from vibro_sweep.model.linear import STEP, Linear, forcing_period
 
 
 class Units(NamedTuple):
@@ -48,6 +50,12 @@ def one_plus_R(q: Linear, sides) -> np.ndarray:
 def which_press(q: Linear) -> np.ndarray | None:
     """(2,) whether the left and the right stop are compliant; None where both are rigid."""
     return np.array([q.k_low > 0, q.k_high > 0]) if q.compliant else None
+
+
+def presses_too_long(q: Linear) -> bool:
+    """Whether a contact with a stop that lasts for a forcing period takes more parts than are computed."""
+    laws = np.array(numbers_of(q, Units(1.0, 1.0))[:-NUMBERS]).reshape(-1, 3)
+    return bool(np.any(FINER * (np.sqrt(laws[:, 0]) + laws[:, 1]) * forcing_period(q) > MOST_PARTS))
 
 
 def is_smooth(q: Linear, side: int) -> bool:

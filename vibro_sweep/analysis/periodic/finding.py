@@ -8,7 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from vibro_sweep.analysis.periodic.contact_numbers import one_plus_R
+from vibro_sweep.analysis.periodic.contact_numbers import one_plus_R, presses_too_long
 from vibro_sweep.analysis.periodic.event_equations import EventEquations
 from vibro_sweep.analysis.periodic.itinerary import SIDES, is_mirrored, repetitions, word
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit, found_orbit, leans, orbit_of
@@ -71,14 +71,17 @@ def periodic_orbit(system, state=None, periods: int = 1, itinerary: str | None =
         raise ArgumentError(not_allowed("itinerary", itinerary, f"of at most {MOST_IMPACTS} impacts without a guess"))
     try:
         if state is not None:
-            return _from_state(system, family, state, periods)
-        if rows is not None:
-            return _from_guess(system, family, rows, periods)
-        return _from_itinerary(system, family, sides, periods)
+            found = _from_state(system, family, state, periods)
+        elif rows is not None:
+            found = _from_guess(system, family, rows, periods)
+        else:
+            found = _from_itinerary(system, family, sides, periods)
     except ResonanceError:
         return PeriodicOrbit(system, "resonance")
     except TooStiffError:
         return PeriodicOrbit(system, "too_stiff")
+    too_stiff = found.status == "not_converged" and presses_too_long(family.linear)
+    return PeriodicOrbit(system, "too_stiff") if too_stiff else found
 
 
 def _checked_sides(q, itinerary) -> tuple[int, ...]:

@@ -145,9 +145,10 @@ def contact_flow(q: Linear, side: int) -> Flow:
 def _flow(q: Linear, B: np.ndarray, row: np.ndarray, rate: float = 0.0) -> Flow:
     """rate : beside those of the free flight, which cells are to resolve"""
     n = len(B) - 3
-    cells = 2 * cells_needed(q) + math.ceil(2 * rate * forcing_period(q))
+    cells = 2 * cells_needed(q)
     if cells > MOST_CELLS:
         raise TooStiffError(f"a forcing period needs {cells} cells, at most {MOST_CELLS} are allowed")
+    cells += math.ceil(2 * rate * forcing_period(q))
     width = extended(forcing_period(q)) / cells
     step = exponential(extended(B), width)
     powers = []
