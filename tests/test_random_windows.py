@@ -38,6 +38,22 @@ def test_the_same_windows_of_all_sweeps(seeds, capsys):
     assert not [line for report in reports for line in report.wrong]
 
 
+@pytest.mark.parametrize(
+    "seeds",
+    [
+        pytest.param([4, 1001], marks=pytest.mark.slow, id="two"),
+        pytest.param([*range(60), *range(1000, 1060)], marks=pytest.mark.soak, id="all"),
+    ],
+)
+def test_the_same_windows_of_sweeps_with_compliant_stops(seeds, capsys):
+    reports = [window_search.study(seed, compliant=True) for seed in seeds]
+    with capsys.disabled():
+        if len(reports) > 10:
+            print("\n" + summary(reports))
+    assert sum(report.counted["windows"] for report in reports) > 5 * len(reports)
+    assert not [line for report in reports for line in report.wrong]
+
+
 @pytest.mark.slow
 def test_a_window_from_its_ends(few):  # noqa: F811
     """Also beside a fold or pitchfork: the run began on their other side, and the window was an unstable stretch."""

@@ -29,6 +29,7 @@ from vibro_sweep.model.outcomes import REASONS
 NEAR_ENDS = (1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12)  # shares of a window from its ends
 CLOSE = 1e-9  # of the range: ends of one window differ by less
 NARROW = 1e-11  # of the range: a window found from a value of a sweep is wider
+EXPLAINED = ("in_a_window", "sticking", "not_isolated", "permanent_contact", "unrelaxed")  # reasons that hold
 BESIDE = 1e-8  # of a state: the step of differences
 
 
@@ -79,6 +80,7 @@ def study(seed: int, compliant: bool = False) -> Report:
     rng, report = np.random.default_rng([seed, 1]), Report()
     model, system = drawn(seed, compliant, rng)
     name, (lo, hi) = drawn_number(system, rng)
+    lo = max(lo, 0.0) if name in ("c_stop", "preload") else lo
     count = 2 * int(rng.integers(6, 11)) + 1
     values = np.linspace(lo, hi, count) if hi > lo else None
     where = f"sweep {seed}, {model}, {name} {lo:.9g} .. {hi:.9g}, {count} values"
@@ -206,7 +208,7 @@ def covered(report, wrong, data, windows, name) -> None:
     for place in np.argwhere(period > 0).tolist():
         reason = list(REASONS)[int(windows.reason[tuple(place)])]
         report.counted[f"periodic: {reason}"] += 1
-        if reason in ("in_a_window", "sticking", "not_isolated"):
+        if reason in EXPLAINED:
             continue
         value = float(values[place[0]])
         state = np.array([one[tuple(place)] for one in last])
@@ -229,9 +231,11 @@ def same_window(report, wrong, a, b, size) -> None:
     if not hi - lo > NARROW * size:
         return
     orbits = [at(one, (lo + hi) / 2) for one in (a, b)]
-    speeds = [np.sort(np.abs([*one.impacts["v1"], *one.contacts["v_touch"]])) for one in orbits]
-    if not all(orbit.ok for orbit in orbits) or np.ptp(speeds, axis=0).max(initial=0.0) > 1e-7 * np.max(
-        speeds, initial=0.0
+    speeds = [
+        np.sort([*one.impacts["v1"], *(one.contacts["side"] * one.contacts["v_touch"])]) for one in orbits
+    ]  # with their sides, which tell an orbit from its mirror image
+    if not all(orbit.ok for orbit in orbits) or np.ptp(speeds, axis=0).max(initial=0.0) > 1e-7 * np.abs(speeds).max(
+        initial=0.0
     ):
         return
     report.counted["pairs"] += 1

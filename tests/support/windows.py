@@ -68,10 +68,11 @@ def _distance(a, b) -> float:
 
 
 def _near(window, special, step: float):
-    """The orbit at an end; the one `step` beside it, roughly, at a fold and where a contact begins smoothly: there they
-    move like the square root."""
+    """The orbit at an end; the one `step` beside it, roughly, where orbits move like the square root: at a fold, and
+    where a contact begins smoothly, or becomes two."""
     arrays, (point, beside) = window._arrays, (0, 1) if special is window.lower else (-1, -2)
-    root = special.type == "fold" or (special.type == "graze" and special.orbit.system.linear.compliant)
+    compliant = special.orbit.system.linear.compliant
+    root = special.type == "fold" or (special.type in ("graze", "split") and compliant)
     share = np.sqrt(step / abs(arrays["value"][beside] - arrays["value"][point])) if root else 0.0
     parts = [
         (1 - share) * arrays[name][point] + share * arrays[name][beside]

@@ -140,7 +140,9 @@ def _from_contacts(system, family, simulated, periods) -> PeriodicOrbit:
     guess = Solution(family, 1, 2 * periods, (), np.empty(0)).with_events(sides, t, D, ends)
     if len(guess.rests) < np.count_nonzero(guess.contacts) or not np.all(np.isfinite(guess.u)):
         return PeriodicOrbit(system, "not_converged")
-    return found_orbit(system, guess.corrected())
+    if (found := guess.corrected()) is None and not guess.relaxes:
+        return PeriodicOrbit(system, "unrelaxed")
+    return found_orbit(system, found)
 
 
 def _from_rests(system, family, simulated, periods) -> PeriodicOrbit:
