@@ -104,7 +104,7 @@ def examine_curve(f, c, place, b):
         tests[TEST.plus] = determinant(c, b, n, 1.0) / grazes
     if c.kind != FLIP and not watched:
         tests[TEST.minus] = determinant(c, b, n, -1.0) / grazes
-    if (c.kind == FLIP or c.kind == TORUS) and not has_rests(c):
+    if (c.kind == TORUS or (c.kind == FLIP and has_losses(f, c))) and not has_rests(c):
         # det G(1) takes away the pole where the orbit has the multiplier 1 as well
         tests[TEST.normal] = coefficient(f, c, place, b) * tests[TEST.plus]
     if c.kind == GRAZE:
