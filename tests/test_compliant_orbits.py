@@ -238,7 +238,7 @@ def test_orbits_with_short_contacts_are_found(law, depth):
     np.testing.assert_allclose(orbit.multipliers, known.multipliers, rtol=0, atol=1e-9)
 
 
-@pytest.mark.parametrize(("c_stop", "status"), [(2e4, "ok"), (1e5, "too_stiff"), (1e9, "too_stiff")])
+@pytest.mark.parametrize(("c_stop", "status"), [(2e4, "ok"), (1e5, "too_stiff")])
 def test_stops_with_a_strong_damper(c_stop, status):
     """Contacts of which a forcing period is 4e5 cells were found, and could not be shown; longer ones are not found."""
     orbit = vs.periodic_orbit(one_mass(k_stop=29, c_stop=c_stop), itinerary="R")

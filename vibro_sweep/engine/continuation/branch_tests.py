@@ -6,7 +6,7 @@ import numpy as np
 
 from vibro_sweep.engine.continuation.certificate import certify
 from vibro_sweep.engine.continuation.curve_tests import changes_sign, determinant, eigenvalues_of, passes_birth
-from vibro_sweep.engine.continuation.lasting import factor_of_grazes, sign_of_events
+from vibro_sweep.engine.continuation.lasting import factor_of_grazes, sign_of_events, speed_before
 from vibro_sweep.engine.continuation.moving_flow import OMEGA, ONE_PLUS_R_HIGH, ONE_PLUS_R_LOW
 from vibro_sweep.engine.continuation.workspace import BRANCH_TESTS, TEST
 from vibro_sweep.engine.impulses.pairs import ON_PAIR, ON_SQUARE, exchanged
@@ -29,7 +29,7 @@ def examine_branch(f, c, place, b):
     x[TEST.above] = -1.0
     for i in range(len(b.events)):
         if c.rests[i]:
-            x[TEST.hold] = min(x[TEST.hold], b.events[i].hold)
+            x[TEST.hold] = min(x[TEST.hold], b.events[i].hold, speed_before(c, i, b.events[i]))
         elif f.numbers[ONE_PLUS_R_HIGH if c.sides[i] > 0 else ONE_PLUS_R_LOW] == 1.0:
             after = b.events[i].motion[1] + f.numbers[OMEGA] * b.events[i].bend[n // 2]
             x[TEST.release] = min(x[TEST.release], -c.sides[i] * after)

@@ -100,6 +100,12 @@ def leaves_slowly(c, i):
 
 
 @jit
+def speed_before(c, i, e):
+    """The speed into the stop before a rest; inf of a contact, which begins without one too."""
+    return c.sides[i] * e.motion[0] if leaves_slowly(c, i) else np.inf
+
+
+@jit
 def leaves_at_stop(c, i, e):
     """Whether event i is a contact that ends as it begins, with the gap at its stop."""
     return c.rests[i] and is_contact(c.compliant, c.sides[i]) and e.depth == 0.0
@@ -196,11 +202,10 @@ def state_within(f, compliant, side, x, delay, e, work, state):
 
 @jit
 def hold_of(f, compliant, side, x, e, work):
-    """What keeps it up: the least depth of a contact; of a rest the least acceleration into the stop, and the speed
-    before it."""
+    """What keeps it up: the least acceleration into the stop during a rest, the least depth of a contact."""
     if compliant is None:
-        return min(press(f, side, x, e, work), side * e.motion[0])
+        return press(f, side, x, e, work)
     elif is_contact(compliant, side):
         return least_depth(f, side, x, e, work)
     else:
-        return min(press(f, side, x, e, work), side * e.motion[0])
+        return press(f, side, x, e, work)
