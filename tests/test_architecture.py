@@ -107,3 +107,18 @@ def test_the_root_has_packages_only():
 def test_a_files_name_tells_it_apart_from_all_others():
     names = [path.name for path in HOME.rglob("*.py") if path.name != "__init__.py"]
     assert len(names) == len({*names}) > 300
+
+
+def test_one_room_of_the_core_asks_for_the_law_of_a_contact():
+    """Others hand `Problem.compliant` on to it; none imports its question, or compares."""
+    asked = set()
+    for path in (HOME / "engine" / "continuation").glob("*.py"):
+        tree = ast.parse(path.read_text())
+        handed = {id(one) for call in ast.walk(tree) if isinstance(call, ast.Call) for one in call.args}
+        asked |= {
+            path.stem
+            for node in ast.walk(tree)
+            if (isinstance(node, ast.Attribute) and node.attr == "compliant" and id(node) not in handed)
+            or (isinstance(node, ast.Name) and node.id == "is_contact")
+        }
+    assert asked == {"lasting"}

@@ -270,3 +270,18 @@ def test_orbits_that_attract_are_found_by_their_contacts():
             found += again.ok
             missed += [] if again.ok else [system]
     assert not missed
+
+
+@pytest.mark.parametrize("stops", [dict(k_stop=29), dict(R=0.8)], ids=["elastic", "rigid"])
+@pytest.mark.parametrize("unsettled", [1e-8, -1e-8])
+def test_an_orbit_that_has_nearly_settled(stops, unsettled):
+    """Its first contact comes again a little before a period is over, and was then counted twice."""
+    system = one_mass(**({"k_stop": None} | stops))
+    orbit = vs.periodic_orbit(system, itinerary="R")
+    first = (orbit.contacts["t_touch"] if "k_stop" in stops else orbit.impacts["t"])[0]
+    before = first - 0.01 * system.period
+    state = orbit.sample([before])[0] + unsettled * np.array([1.0, 1.0])
+    later = system.replace(tau=system.tau + system.omega * before)
+    again = vs.periodic_orbit(later, state=state, periods=1)
+    assert again.ok and again.itinerary == "R"
+    np.testing.assert_allclose(np.sort(again.multipliers), np.sort(orbit.multipliers), rtol=0, atol=1e-9)

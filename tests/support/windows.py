@@ -32,7 +32,7 @@ def check_end(window, special, outwards: int) -> str | None:
     if special.type == "boundary":
         return None
     end = special.parameters[window.parameter]
-    step = BESIDE * max(1.0, abs(end))
+    step = min(BESIDE * max(1.0, abs(end)), 1e-3 * (window.hi - window.lo))
     inside, outside = (
         special.orbit.system.replace(**{window.parameter: end + d * step}) for d in (-outwards, outwards)
     )

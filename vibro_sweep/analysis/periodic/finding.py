@@ -31,6 +31,7 @@ SEEDS = 4000
 AT_ONCE = 250  # of them: the orbit may be among the first
 MOMENTS = 24
 SAME = 1e-7  # relative difference of solutions from two seeds that are one, and in parts of their units
+ROUNDING, UNSETTLED, ALIKE = 1e-9, 1e-6, 1e-3  # of a period; the same of an orbit near it; of speeds, relative
 MOST_PERIODS = 10**6
 MOST_IMPACTS = 1000  # of an itinerary: each has thousands of seeds
 
@@ -120,9 +121,15 @@ def _from_state(system, family, state, periods) -> PeriodicOrbit:
     if len(simulated.sticking):
         return _from_rests(system, family, simulate(system, state, 2 * periods), periods)
     impacts = simulated.impacts
-    if len(impacts):  # an impact at t = 0 comes again at the end
-        impacts = impacts[impacts["t"] < impacts["t"][0] + periods * system.period * (1 - 1e-9)]
+    impacts = impacts[_within_a_period(impacts["t"], impacts["side"], impacts["v1"], periods * system.period)]
     return _from_guess(system, family, [(i["t"], i["side"], i["v1"]) for i in impacts], periods)
+
+
+def _within_a_period(t, sides, speeds, P: float) -> np.ndarray:
+    """Which events are those of a period from the first one on. That comes again, with its side and its speed, after P
+    but for what is left of the transient."""
+    again = (sides == sides[:1]) & (np.abs(speeds - speeds[:1]) <= ALIKE * np.abs(speeds[:1]))
+    return t < t[:1] + P * (1 - np.where(again, UNSETTLED, ROUNDING))
 
 
 def _from_contacts(system, family, simulated, periods) -> PeriodicOrbit:
@@ -135,8 +142,9 @@ def _from_contacts(system, family, simulated, periods) -> PeriodicOrbit:
     events = sorted((one for one in events if one[0] > simulated.start_time), key=lambda one: one[0])
     if not events and len(contacts) and np.isnan(contacts["t_release"][-1]):
         return PeriodicOrbit(system, "permanent_contact")
-    events = [one for one in events if one[0] < events[0][0] + P * (1 - 1e-9)]
     t, sides, D, ends = np.array(events, float).reshape(-1, 4).T
+    within = _within_a_period(t, sides, D, P)
+    t, sides, D, ends = (values[within] for values in (t, sides, D, ends))
     guess = Solution(family, 1, 2 * periods, (), np.empty(0)).with_events(sides, t, D, ends)
     if len(guess.rests) < np.count_nonzero(guess.contacts) or not np.all(np.isfinite(guess.u)):
         return PeriodicOrbit(system, "not_converged")
@@ -151,7 +159,7 @@ def _from_rests(system, family, simulated, periods) -> PeriodicOrbit:
     if np.any(R(simulated.sticking["side"]) != 0) or str(simulated.status) != "ok" or not len(impacts):
         return PeriodicOrbit(system, "sticking")
     begin = impacts["t"][0]
-    impacts = impacts[impacts["t"] < begin + P * (1 - 1e-9)]
+    impacts = impacts[_within_a_period(impacts["t"], impacts["side"], impacts["v1"], P)]
     resting = simulated.sticking
     resting = resting[(resting["t_on"] > begin - 1e-9 * P) & (resting["t_on"] < begin + P * (1 - 1e-9))]
     rests = tuple(int(np.argmin(np.abs(impacts["t"] - t))) for t in resting["t_on"])

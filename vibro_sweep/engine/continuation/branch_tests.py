@@ -10,7 +10,7 @@ from vibro_sweep.engine.continuation.lasting import factor_of_grazes, sign_of_ev
 from vibro_sweep.engine.continuation.moving_flow import OMEGA, ONE_PLUS_R_HIGH, ONE_PLUS_R_LOW
 from vibro_sweep.engine.continuation.workspace import BRANCH_TESTS, TEST
 from vibro_sweep.engine.impulses.pairs import ON_PAIR, ON_SQUARE, exchanged
-from vibro_sweep.engine.simd.jit import jit, noinline
+from vibro_sweep.engine.simd.jit import noinline, small
 
 PASSED = 1e-13  # distance beyond a stop, in units of the gap, which rounding does not explain
 FARTHER = 2.0  # times: a number that is so much nearer to zero than at the points beside changes too fast between them
@@ -18,7 +18,7 @@ ZERO = ON_SQUARE**2, ON_PAIR**2  # of |1 + mu|^2 and |1 - mu_i mu_j|^2: what no 
 FAR_OUTSIDE = 0.5  # of |mu|^2 - 1: multipliers from there on do not reach the circle within a step and go back
 
 
-@jit
+@small
 def examine_branch(f, c, place, b):
     """Tests and certificate of a corrected point of a branch, for which `assemble` has filled b."""
     n, x, work = f.A.shape[0], place.tests, b.work[0]
@@ -81,7 +81,7 @@ def take_products(re, im, root, without_zeros, x):
         x[TEST.pair], x[TEST.crossing] = X, X / root ** (n - 1)
 
 
-@jit
+@small
 def counts_differ(x, y):
     """Whether multipliers cross the unit circle between two points, as far as counts tell.
 
@@ -98,7 +98,7 @@ def counts_differ(x, y):
     return not (collide and min(x[TEST.away], y[TEST.away]) > FAR_OUTSIDE)
 
 
-@jit
+@small
 def crosses_over(c, a, b):
     """Whether b lies on another branch than a, as far as tests tell: where an offset unfolds a pitchfork, two run close
     beside each other.
@@ -116,7 +116,7 @@ def crosses_over(c, a, b):
     return turns != (crossed != (sign < 0.0)) and not passes_birth(c, a, b)
 
 
-@jit
+@small
 def dips(x, y, z, before, behind):
     """Whether a number with these values at three points, at the distances `before` and `behind` from the middle one,
     may vanish twice near the middle one: the parabola has an extremum nearer to zero by a quarter or more, or steps are
@@ -130,13 +130,13 @@ def dips(x, y, z, before, behind):
     return slope * slope > curve * y * (before + behind) or min(x, z) > FARTHER * y
 
 
-@jit
+@small
 def turns_back(x, slope, y, later, length):
     """Whether a number that is positive at two points may be negative between them: where its tangents meet it is."""
     return slope < 0.0 < later and x * (slope - later) + slope * (y - x - later * length) > 0.0
 
 
-@jit
+@small
 def happens_on_branch(c, a, b):
     """Whether a test changes its sign between two points, multipliers cross the unit circle, or b is out of the stops;
     or whether something may do so twice."""
@@ -159,7 +159,7 @@ def happens_on_branch(c, a, b):
     return False
 
 
-@jit
+@small
 def touches_on_branch(path, a, b):
     """Whether what is watched may vanish twice beside a, which lies between the point before it and b."""
     before, x, y, z = path.before[0], path.past_tests, a.tests, b.tests

@@ -25,7 +25,7 @@ from functools import cache
 import numpy as np
 
 from vibro_sweep.engine.continuation.moving_flow import ONE_PLUS_R_HIGH, ONE_PLUS_R_LOW
-from vibro_sweep.engine.simd.jit import jit
+from vibro_sweep.engine.simd.jit import small
 from vibro_sweep.engine.simd.memory import record
 
 ORDERS = 16  # of the series
@@ -62,7 +62,7 @@ def tail_of(masses: int) -> np.dtype:
     ])  # fmt: skip
 
 
-@jit
+@small
 def start(f, side, tail):
     """phi, its powers, d_0 and nu_m,0, and their derivatives."""
     one_plus_R = ONE_PLUS_R_HIGH if side > 0 else ONE_PLUS_R_LOW
@@ -95,7 +95,7 @@ def start(f, side, tail):
             tail.nu_slopes[0, m, v] = (tail.d_slopes[0, v] * q + turn) / (1.0 - q)
 
 
-@jit
+@small
 def shares(tail, l, m):  # noqa: E741
     """alpha_m and beta_m at order l."""
     power = tail.power[0]
@@ -103,7 +103,7 @@ def shares(tail, l, m):  # noqa: E741
     return power[l + m + 2] / left, (m + 2) * power[m + 1] * (tail.d[0] + tail.nu[0, m]) / left
 
 
-@jit
+@small
 def solve_two(kept, tail, l, gap, speed):  # noqa: E741
     """d_l and pi_l from both equations."""
     alpha, beta = shares(tail, l, 0)
@@ -113,7 +113,7 @@ def solve_two(kept, tail, l, gap, speed):  # noqa: E741
     return (gap * beta - speed * b) / determinant, (speed * a - gap * c) / determinant
 
 
-@jit
+@small
 def next_order(kept, l, tail):  # noqa: E741
     """pi_l, d_l, their powers and nu_m,l from those of lower order; kept: R/(1 + R)."""
     power, nu, d = tail.power, tail.nu, tail.d
@@ -149,7 +149,7 @@ def next_order(kept, l, tail):  # noqa: E741
         nu[l, m] += alpha * d[l] + beta * power[l, 1]
 
 
-@jit
+@small
 def next_slopes(kept, W, l, tail):  # noqa: E741
     """The derivatives of what `next_order` has computed."""
     power, nu, d = tail.power, tail.nu, tail.d

@@ -13,13 +13,13 @@ import numpy as np
 
 from vibro_sweep.engine.continuation.chatter_series import FACTORIAL, ORDERS, SLOPES, next_order, next_slopes, start
 from vibro_sweep.engine.continuation.moving_flow import OMEGA, ONE_PLUS_R_HIGH, ONE_PLUS_R_LOW
-from vibro_sweep.engine.simd.jit import jit
+from vibro_sweep.engine.simd.jit import small
 
 REACH, NEXT = range(2)  # of `numbers`: the largest s of the series; s of the impact that follows
 DECAYED = 1e-15  # relative size of the first term left out, at the largest s
 
 
-@jit
+@small
 def multiply_out(f, tail):
     """e_gap A^m, A^m e_v."""
     n, rows, columns = f.A.shape[0], tail.rows, tail.columns
@@ -49,7 +49,7 @@ def multiply_out(f, tail):
                         columns[1 + j, m, r] += f.A_slopes[j, r, c] * columns[0, m - 1, c]
 
 
-@jit
+@small
 def differentiate(f, t, h, rate, turn, tail):
     """y_m and gamma_m at the end of the sequence; turn: e^{i phi} there."""
     n, omega, rows, y, slopes = f.A.shape[0], f.numbers[OMEGA], tail.rows, tail.y, tail.y_slopes
@@ -74,7 +74,7 @@ def differentiate(f, t, h, rate, turn, tail):
         power *= 1j * omega
 
 
-@jit
+@small
 def sum_up(f, s, tail):
     """Q, p(s), and up to which s they hold."""
     n, nu, Q, columns, slopes = f.A.shape[0], tail.nu, tail.Q, tail.columns, tail.sides[0]
@@ -114,7 +114,7 @@ def sum_up(f, s, tail):
     tail.numbers[REACH], tail.numbers[NEXT] = reach, following
 
 
-@jit
+@small
 def sum_chatter(f, side, t, rate, h, turn, s, tail):
     """Fill `tail` for a sequence on `side` that ends at t in the state h, with h' = rate and e^{i phi} = turn.
 

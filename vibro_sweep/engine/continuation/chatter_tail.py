@@ -7,10 +7,10 @@ chatter_sum.py, in the closure: y_{K+1} + sigma Q = sigma y_1.
 
 from vibro_sweep.engine.continuation.chatter_sum import sum_chatter
 from vibro_sweep.engine.continuation.moving_flow import OMEGA
-from vibro_sweep.engine.simd.jit import jit
+from vibro_sweep.engine.simd.jit import small
 
 
-@jit
+@small
 def end_of_chatter(f, x, e, panel):
     """Row n of the panel: no acceleration of the gap."""
     n, N, omega = f.A.shape[0], f.A.shape[0] // 2, f.numbers[OMEGA]
@@ -27,7 +27,7 @@ def end_of_chatter(f, x, e, panel):
             panel[i, p + j] += f.A_slopes[j, N, c] * x[c]
 
 
-@jit
+@small
 def sum_tail(f, c, place, b):
     """Q, of the sequence that follows the last flight, with its derivatives."""
     first, rate, last = b.events[0], b.work[0].rate, b.events[len(b.events) - 1]
@@ -36,7 +36,7 @@ def sum_tail(f, c, place, b):
     sum_chatter(f, c.sides[0], 0.0, rate, place.x[0], first.turn, last.length, b.tail[0])
 
 
-@jit
+@small
 def put_tail(f, c, place, b, panel):
     """Add Q to the rows of the last flight.
 

@@ -30,10 +30,10 @@ from vibro_sweep.engine.continuation.reflections import (
 )
 from vibro_sweep.engine.continuation.second_derivative import differentiate
 from vibro_sweep.engine.continuation.workspace import THETA
-from vibro_sweep.engine.simd.jit import jit
+from vibro_sweep.engine.simd.jit import small
 
 
-@jit
+@small
 def multiplier(c, place):
     """mu of the curve."""
     if c.kind == TORUS:
@@ -41,7 +41,7 @@ def multiplier(c, place):
     return (1.0 if c.kind == FOLD else -1.0) + 0j
 
 
-@jit
+@small
 def put_matrix(c, b, n, mu, out):
     """G(mu)."""
     last, X = b.work[0].last, 2 * n + 2
@@ -50,7 +50,7 @@ def put_matrix(c, b, n, mu, out):
             out[r, j] = c.sigma * mu * last[r, j] + last[r, X + j]
 
 
-@jit
+@small
 def expand(c, b, n, mu, first):
     """`events.v` from xi_1 and the right sides in `events.sides`, for what grows by mu from period to period."""
     K, after = len(b.events), b.work[0].side
@@ -66,7 +66,7 @@ def expand(c, b, n, mu, first):
             substitute_back(e, n, after, first, e.v)
 
 
-@jit
+@small
 def null_vectors(c, place, b, n, mu):
     """v and w in `events`, bordered by those of `place`, and g. NaN where the bordered matrix is singular."""
     work = b.work[0]
@@ -105,7 +105,7 @@ def null_vectors(c, place, b, n, mu):
     return g
 
 
-@jit
+@small
 def keep_null_vectors(place, b, n):
     """v and w of `place` become those in `events`, of length 1 and turned as those before; returns both lengths."""
     K, size_v, size_w, turn_v, turn_w = len(b.events), 0.0, 0.0, 0j, 0j
@@ -126,14 +126,14 @@ def keep_null_vectors(place, b, n):
     return scale_v, scale_w
 
 
-@jit
+@small
 def turned(product):
     """The number of size 1 that turns a vector with this product with another one to it."""
     size = math.sqrt(square(product))
     return product.conjugate() / size if size > 0.0 else 1.0 + 0j
 
 
-@jit
+@small
 def put_conditions(f, c, place, b):
     """The scalar rows of the curve's conditions, with what they leave. False where they are singular."""
     n, work = f.A.shape[0], b.work[0]

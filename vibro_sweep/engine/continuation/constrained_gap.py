@@ -20,10 +20,10 @@ import numpy as np
 from vibro_sweep.engine.continuation.moving_flow import HIGH, LOW, OMEGA
 from vibro_sweep.engine.impulses.extremes import OVERLAP, extremes_of_cell
 from vibro_sweep.engine.impulses.taylor_orders import ORDER
-from vibro_sweep.engine.simd.jit import jit
+from vibro_sweep.engine.simd.jit import small
 
 
-@jit
+@small
 def rest(f, side, x, e, room):
     """`after`, `carry`, `pull` and `release` of a rest, after `approach`."""
     n, N, omega, v = f.A.shape[0], f.A.shape[0] // 2, f.numbers[OMEGA], e.motion[0]
@@ -44,7 +44,7 @@ def rest(f, side, x, e, room):
     put_release(f, e, turn)
 
 
-@jit
+@small
 def begin_rest(f, side, x, e, state):
     """Derivatives of z by xi (n), z, and derivatives by the parameters, once the gap's velocity is lost.
 
@@ -62,13 +62,13 @@ def begin_rest(f, side, x, e, state):
                 state[r, n + 1 + j] = f.number_slopes[j, stop]
 
 
-@jit
+@small
 def cells_of(f, length):
     """The number of parts in which a rest is computed."""
     return int(abs(length) / (f.numbers[OMEGA] * f.width)) + 1
 
 
-@jit
+@small
 def constrain_gap(f, side, x, length, e, room):
     """room[0]: as of `begin_rest`, but this length in phase, which may be negative, after the impact."""
     begin_rest(f, side, x, e, room[0])
@@ -77,7 +77,7 @@ def constrain_gap(f, side, x, length, e, room):
         advance(f, length / cells, e.turn * cmath.exp(1j * length / cells * k), room, e.course)
 
 
-@jit
+@small
 def advance(f, step, swing, room, course):
     """Take room[0] a step in phase ahead, from e^{i phi} = swing on.
 
@@ -99,7 +99,7 @@ def advance(f, step, swing, room, course):
                 before[r, c] = term[r, c]
 
 
-@jit
+@small
 def press(f, side, x, e, work):
     """The least free acceleration into the stop during a rest: where it begins, or turns."""
     n = f.A.shape[0]
@@ -117,7 +117,7 @@ def press(f, side, x, e, work):
     return least
 
 
-@jit
+@small
 def next_term(f, order, step, swing, before, term):
     """The Taylor term of this order from that before it; swing: (i step)^{order - 1}/(order - 1)! e^{i phi}."""
     n, N = f.A.shape[0], f.A.shape[0] // 2
@@ -129,7 +129,7 @@ def next_term(f, order, step, swing, before, term):
             put_term(f, order, step, swing, before, term, r)
 
 
-@jit
+@small
 def put_term(f, order, step, swing, before, term, r):
     """Row r of it, by the free rates."""
     n, N, omega = f.A.shape[0], f.A.shape[0] // 2, f.numbers[OMEGA]
@@ -152,7 +152,7 @@ def put_term(f, order, step, swing, before, term, r):
         term[r, n + 1 + j] += share * total - f.number_slopes[j, OMEGA] / omega * term[r, n]
 
 
-@jit
+@small
 def free_acceleration(f, state, turn):
     """The free acceleration of the gap by the whole motion z, as in `begin_rest`, since steady motions may be much
     larger."""
@@ -163,7 +163,7 @@ def free_acceleration(f, state, turn):
     return total
 
 
-@jit
+@small
 def put_release(f, e, turn):
     """`release`: derivatives of the free acceleration at the end of the rest by xi, phi, s and the parameters."""
     n, N, omega = f.A.shape[0], f.A.shape[0] // 2, f.numbers[OMEGA]
@@ -184,7 +184,7 @@ def put_release(f, e, turn):
             e.release[n + 2 + j] += f.A_slopes[j, N, k] * e.after[k]
 
 
-@jit
+@small
 def put_rest(f, e, panel):
     """Row 2 of the event, and the rows of the flight after it: state and parameters."""
     n = f.A.shape[0]

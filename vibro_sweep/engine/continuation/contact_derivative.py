@@ -15,13 +15,13 @@ import math
 from vibro_sweep.engine.continuation.compliant_contact import begin_contact, press_on
 from vibro_sweep.engine.continuation.contact_map import apply, copy_motion, ends_by_force, force_scale, put_rates
 from vibro_sweep.engine.continuation.moving_flow import OMEGA, law_at
-from vibro_sweep.engine.simd.jit import jit
+from vibro_sweep.engine.simd.jit import small
 
 LEAST = 1e-5  # length in phase of a contact: of a shorter one the gradient at this length, as rates are divided by it
 START, END, MEAN, END_RATE, START_VARIED, END_VARIED = range(6)  # of `work.varied`: rates at both ends but END, MEAN
 
 
-@jit
+@small
 def differentiate_contact(f, side, x, e, through, work):
     """Add w.(D_v J) of the map and of row 2 to `e.slopes` and `work.slopes_p`.
 
@@ -56,7 +56,7 @@ def differentiate_contact(f, side, x, e, through, work):
             add_place(f, e, length, by_length, phase, longer, unit * e.w[1], work)
 
 
-@jit
+@small
 def put_motion_rate(f, rates, swing, motion, out):
     """out: the rate of change by phase of a motion in contact, its derivatives with it."""
     n, omega = f.A.shape[0], f.numbers[OMEGA]
@@ -68,19 +68,19 @@ def put_motion_rate(f, rates, swing, motion, out):
             out[r, n + 1 + j] -= f.number_slopes[j, OMEGA] / omega * out[r, n]
 
 
-@jit
+@small
 def part_of(value, k):
     """The real part (k = 0) or the imaginary one."""
     return value.real if k == 0 else value.imag
 
 
-@jit
+@small
 def jump_of_rate(f, e, r):
     """b by the phase: the free rate of coordinate r before the touch less that in contact, where the gap is held."""
     return (e.rate[r] + (1j * f.Z[r] * e.turn).real) * (1.0 if r != 0 else 0.0)
 
 
-@jit
+@small
 def moved_start(f, e, k, phase, work):
     """What the rate of coordinate k at the touch changes by along v, beside that of a motion at the same phase."""
     kept = work.varied
@@ -88,7 +88,7 @@ def moved_start(f, e, k, phase, work):
     return kept[START_VARIED, k, f.A.shape[0]] - kept[START, k, f.A.shape[0]] + own
 
 
-@jit
+@small
 def add_map(f, e, end, by_force, phase, longer, unit, through, work):
     """Add the terms of the state after the contact."""
     n, later = f.A.shape[0], phase + longer
@@ -102,7 +102,7 @@ def add_map(f, e, end, by_force, phase, longer, unit, through, work):
             work.slopes_p[j] -= weight * later * (1j * f.Z_slopes[j, r] * end).real
 
 
-@jit
+@small
 def add_motion(f, e, r, phase, longer, weight, work):
     """Add the terms of coordinate r of the whole motion at the release."""
     n, kept, state = f.A.shape[0], work.varied, work.resting[0]
@@ -123,7 +123,7 @@ def add_motion(f, e, r, phase, longer, weight, work):
         work.slopes_p[j] += weight * moved
 
 
-@jit
+@small
 def add_force(f, side, e, phase, longer, weight, work):
     """Add the terms of row 2 of a release by force."""
     n, N, law, kept, state = f.A.shape[0], f.A.shape[0] // 2, law_at(f, side), work.varied, work.resting[0]
@@ -135,7 +135,7 @@ def add_force(f, side, e, phase, longer, weight, work):
             work.slopes_p[j] += weight * f.slopes[j, law + i] * (state[r, n] - kept[END, r, n])
 
 
-@jit
+@small
 def add_place(f, e, length, by_length, phase, longer, weight, work):
     """Add the terms of row 2 of a release at the stop, d(release)/length."""
     n, N, omega = f.A.shape[0], f.A.shape[0] // 2, f.numbers[OMEGA]

@@ -11,10 +11,10 @@ from vibro_sweep.engine.continuation.contact_map import ends_by_force, force_sca
 from vibro_sweep.engine.continuation.moving_flow import HIGH, LOW, OMEGA, law_at
 from vibro_sweep.engine.continuation.power_series import put_wave, steady, times
 from vibro_sweep.engine.continuation.workspace import TERMS
-from vibro_sweep.engine.simd.jit import jit
+from vibro_sweep.engine.simd.jit import small
 
 
-@jit
+@small
 def press_series(f, side, x, e, y, work):
     """y (n, TERMS) becomes the state after a contact, and `e.left` its rows, from `e.series` of dphi and ds."""
     n, N, s, jets, motion = f.A.shape[0], f.A.shape[0] // 2, x[f.A.shape[0] + 1], work.jets, work.states[1]
@@ -49,7 +49,7 @@ def press_series(f, side, x, e, y, work):
     y[0, 0] += f.numbers[HIGH if side > 0 else LOW]
 
 
-@jit
+@small
 def put_whole_map(f, side, s, x, e, work):
     """work.image: the motion at the end of a contact by (z, cos, sin, 1) at its begin."""
     n, state, image = f.A.shape[0], work.resting[0], work.image
@@ -69,7 +69,7 @@ def put_whole_map(f, side, s, x, e, work):
         image[r, n + 1] -= image[r, n + 2]
 
 
-@jit
+@small
 def lengthen(f, rates, ds, motion, change, rate, jets):
     """Take a motion in contact over the length ds, a series. change, rate: room like motion; jets: as of `put_wave`."""
     n, power, other, constant = f.A.shape[0], jets[0], jets[1], 1.0

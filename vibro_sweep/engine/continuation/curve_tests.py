@@ -14,7 +14,7 @@ from vibro_sweep.engine.continuation.normal_form import coefficient
 from vibro_sweep.engine.continuation.problem import FLIP, FOLD, GRAZE, STICK, TORUS, is_critical
 from vibro_sweep.engine.continuation.residual import eliminate
 from vibro_sweep.engine.continuation.workspace import CURVE_TESTS, TEST, THETA
-from vibro_sweep.engine.simd.jit import jit
+from vibro_sweep.engine.simd.jit import small
 from vibro_sweep.engine.variational.eigenvalues import eigenvalues
 
 LATEST, EARLIEST = 0.9, 0.4  # of the tests `last` and `before`, where another number of impacts is to be written out
@@ -22,7 +22,7 @@ NEAR_STRONG = 0.05  # theta from 0 or pi: the resonance 1:1 or 1:2
 TOUCHING = 1e-12  # stop_distance, in parts of the size of the gap, that counts as zero
 
 
-@jit
+@small
 def determinant(c, b, n, mu):
     """The determinant of G(mu), with the sign of what was eliminated."""
     work, X = b.work[0], 2 * n + 2
@@ -32,7 +32,7 @@ def determinant(c, b, n, mu):
     return work.sign * factorise(work.matrix, n, work.order)
 
 
-@jit
+@small
 def eigenvalues_of(c, b, n):
     """Multipliers, real parts in `work.re` and imaginary ones in `work.im`: eigenvalues of -sigma ahead^-1 behind."""
     work, X = b.work[0], 2 * n + 2
@@ -47,7 +47,7 @@ def eigenvalues_of(c, b, n):
     return eigenvalues(work.matrix, n, work.re, work.im)
 
 
-@jit
+@small
 def pair_test(c, place, b, n):
     """prod_{i<j} (1 - mu_i mu_j) of the multipliers but the critical one.
 
@@ -74,7 +74,7 @@ def pair_test(c, place, b, n):
     return x if abs(math.hypot(u, v) - 1.0) > 1e-9 else 1.0
 
 
-@jit
+@small
 def examine_curve(f, c, place, b):
     """Tests and certificate of a corrected point, for which `assemble` has filled b; its new v and w. False: singular.
 
@@ -118,7 +118,7 @@ def examine_curve(f, c, place, b):
     return True
 
 
-@jit
+@small
 def examine_null_vectors(f, c, place, b, n):
     """Tests for a double mu, and of a fold for a cusp. Without losses multipliers are pairs mu, 1/mu, and mu is double
     all along the curve."""
@@ -136,19 +136,19 @@ def examine_null_vectors(f, c, place, b, n):
         place.tests[TEST.cusp] = (cusp * scale_v * scale_v * scale_w).real
 
 
-@jit
+@small
 def changes_sign(x, y):
     """Whether two numbers differ in sign; their product may underflow."""
     return (x > 0.0 > y) or (x < 0.0 < y)
 
 
-@jit
+@small
 def passes(a, b):
     """Whether a distance changes its sign by more than rounding: where both stops are touched at once, it is zero."""
     return (a > TOUCHING and b < -TOUCHING) or (a < -TOUCHING and b > TOUCHING)
 
 
-@jit
+@small
 def is_born(c, sign, a, b):
     """Whether the difference of the two halves of the orbit (sign -1: a half from the other's mirror) changes its sign.
 
@@ -166,14 +166,14 @@ def is_born(c, sign, a, b):
     return min(size_a, size_b) > 1e-18 and product < -0.5 * math.sqrt(size_a * size_b)  # else one orbit taken twice
 
 
-@jit
+@small
 def passes_birth(c, a, b):
     """Whether the orbits of the curve may be born between two points: from orbits of half the period, or symmetric
     ones."""
     return (c.repeats and is_born(c, 1.0, a, b)) or (c.mirrors and is_born(c, -1.0, a, b))
 
 
-@jit
+@small
 def happens_on_curve(c, a, b):
     """Whether a test changes its sign between two points, or a pair comes near to 1 or -1."""
     if passes_birth(c, a, b):
@@ -195,7 +195,7 @@ def happens_on_curve(c, a, b):
     return False
 
 
-@jit
+@small
 def overflows(c, place):
     """Whether more or fewer impacts of a chatter sequence are to be written out."""
     return c.kind == STICK and (place.tests[TEST.last] > LATEST or place.tests[TEST.before] < EARLIEST)

@@ -1,17 +1,17 @@
 """Triangular factors of a small real or complex matrix, for solutions, adjoint solutions and determinants."""
 
-from vibro_sweep.engine.simd.jit import jit
+from vibro_sweep.engine.simd.jit import small
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.simd.memory import eight, put_eight
 
 
-@jit
+@small
 def square(x):
     """|x|^2 of a real or complex number."""
     return x.real * x.real + x.imag * x.imag
 
 
-@jit
+@small
 def factorise(a, size, order):
     """Replace the leading block of a by its factors, rows exchanged as in `order`; its determinant, 0 if singular."""
     determinant = a[0, 0] * 0.0 + 1.0
@@ -39,7 +39,7 @@ def factorise(a, size, order):
     return determinant
 
 
-@jit
+@small
 def substitute(a, size, order, x):
     """x <- a^-1 x."""
     for j in range(size):
@@ -53,7 +53,7 @@ def substitute(a, size, order, x):
             x[i] -= a[i, j] * x[j]
 
 
-@jit
+@small
 def substitute_transposed(a, size, order, x):
     """x <- a^-T x."""
     for j in range(size):
@@ -67,7 +67,7 @@ def substitute_transposed(a, size, order, x):
         x[j], x[order[j]] = x[order[j]], x[j]
 
 
-@jit
+@small
 def solve_rows(a, size, width):
     """Overwrite columns `size` .. `width` - 1 of a by the solutions of the system before them. False: singular.
 

@@ -10,10 +10,10 @@ from vibro_sweep.engine.continuation.corrector import assemble
 from vibro_sweep.engine.continuation.curve_tests import examine_curve, happens_on_curve
 from vibro_sweep.engine.continuation.problem import ORBIT, STICK
 from vibro_sweep.engine.continuation.residual import fly_through
-from vibro_sweep.engine.simd.jit import jit
+from vibro_sweep.engine.simd.jit import small
 
 
-@jit
+@small
 def refresh(f, c, place, b):
     """Leave in b what tests of a corrected point need. False: singular.
 
@@ -25,7 +25,7 @@ def refresh(f, c, place, b):
     return assemble(f, c, place, b)
 
 
-@jit
+@small
 def examine(f, c, place, b):
     """Tests and certificate of a corrected point. False: singular."""
     if c.kind == ORBIT:
@@ -34,19 +34,19 @@ def examine(f, c, place, b):
     return examine_curve(f, c, place, b)
 
 
-@jit
+@small
 def happens(c, a, b):
     """Whether something happens between two points, as far as their tests tell."""
     return happens_on_branch(c, a, b) if c.kind == ORBIT else happens_on_curve(c, a, b)
 
 
-@jit
+@small
 def touches(path, c, a, b):
     """Whether something may happen twice beside a, unseen by the tests."""
     return c.kind == ORBIT and touches_on_branch(path, a, b)
 
 
-@jit
+@small
 def goes_over(c, a, b):
     """Whether b lies on another branch than a."""
     return c.kind == ORBIT and crosses_over(c, a, b)

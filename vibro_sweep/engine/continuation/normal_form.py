@@ -23,12 +23,12 @@ from vibro_sweep.engine.continuation.power_series import MIRROR, POWERS, put_wav
 from vibro_sweep.engine.continuation.problem import FLIP
 from vibro_sweep.engine.continuation.reflections import take_down
 from vibro_sweep.engine.continuation.workspace import TERMS
-from vibro_sweep.engine.simd.jit import jit
+from vibro_sweep.engine.simd.jit import small
 
 LINEAR, SQUARE, MIXED, CUBE, RESONANT, OPPOSITE = 1, 3, 4, 6, 7, 9  # places of z, z^2, z z*, z^3, z^2 z*, z*^3
 
 
-@jit
+@small
 def factor_of(mu, m):
     """mu^j mu*^k."""
     result = 1.0 + 0j
@@ -39,7 +39,7 @@ def factor_of(mu, m):
     return result
 
 
-@jit
+@small
 def meet(f, one_plus_R, e, D, series, y, jets, left):
     """left (2, TERMS): rows 1 and 2 of an impact, for the state y (n, TERMS) before it at its own phase."""
     N, R1 = f.A.shape[0] // 2, f.numbers[one_plus_R]
@@ -50,7 +50,7 @@ def meet(f, one_plus_R, e, D, series, y, jets, left):
     left[1, 0] += D
 
 
-@jit
+@small
 def fly_series(f, e, delay, y, landing, turned, power, other):
     """y becomes E exp(A delay/omega) (y, 1), all power series; power becomes those of delay.
 
@@ -89,7 +89,7 @@ def fly_series(f, e, delay, y, landing, turned, power, other):
         y[r, 0] += e.E[0, r, n]
 
 
-@jit
+@small
 def residuals(f, c, place, b, mu):
     """`left` of the events and `closing`: coefficients of all equations, for those of X in `series` and `first`."""
     K, n = len(place.x), f.A.shape[0]
@@ -122,7 +122,7 @@ def residuals(f, c, place, b, mu):
             work.closing[r, m] = c.sigma * factor_of(mu, m) * work.first[r, m] - y[r, m]
 
 
-@jit
+@small
 def solve_order(f, c, place, b, mu, m):
     """The coefficient of order m from its residual. False where mu^j mu*^k is a multiplier."""
     K, n, work, rows = len(place.x), f.A.shape[0], b.work[0], b.trial
@@ -144,7 +144,7 @@ def solve_order(f, c, place, b, mu, m):
     return True
 
 
-@jit
+@small
 def set_order(f, b, m):
     """X_m from (xi, dphi, dD) in `events.v`, and its mirror: dy_1 = xi_1 + y' dphi_1."""
     n, first = f.A.shape[0], b.work[0].first
@@ -163,7 +163,7 @@ def set_order(f, b, m):
             first[r, MIRROR[m]] = value.conjugate()
 
 
-@jit
+@small
 def clear_mirror(f, b, m):
     """Clear the terms of conj(z): for a flip, power series are of z alone."""
     for i in range(len(b.events)):
@@ -172,7 +172,7 @@ def clear_mirror(f, b, m):
         b.work[0].first[r, MIRROR[m]] = 0.0
 
 
-@jit
+@small
 def coefficient(f, c, place, b):
     """The coefficient for the v and w of `place`, with z = w.(closing rows of v); NaN where it is not defined.
 

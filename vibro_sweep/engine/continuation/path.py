@@ -12,7 +12,7 @@ from vibro_sweep.engine.continuation.moving_flow import OMEGA
 from vibro_sweep.engine.continuation.problem import index_of, unknowns
 from vibro_sweep.engine.continuation.residual import approach, leave
 from vibro_sweep.engine.continuation.workspace import TEST, Place, new_place
-from vibro_sweep.engine.simd.jit import jit
+from vibro_sweep.engine.simd.jit import small
 
 CAUTION = 0.1  # of the height to which a parameter rises between two points: what a cubic may be wrong by
 
@@ -53,7 +53,7 @@ def new_path(most: int, K: int, n: int, longest: float, shortest: float, straigh
     return Path(longest, shortest, straight, bounds, counts, *places, record, *past)
 
 
-@jit
+@small
 def copy_place(a, b):
     """b <- a."""
     K, width = a.x.shape
@@ -71,7 +71,7 @@ def copy_place(a, b):
         b.multipliers[r, 0], b.multipliers[r, 1] = a.multipliers[r, 0], a.multipliers[r, 1]
 
 
-@jit
+@small
 def remember(path, a, length):
     """Keep a as the point before the next one, at this distance."""
     for r in range(len(path.past)):
@@ -81,7 +81,7 @@ def remember(path, a, length):
     path.before[0] = length
 
 
-@jit
+@small
 def keep(place, b, omega, record, count):
     record.omega[count] = omega
     K, width = place.x.shape
@@ -96,7 +96,7 @@ def keep(place, b, omega, record, count):
         record.tests[count, j] = place.tests[j]
 
 
-@jit
+@small
 def state_at(f, c, x, phase, b, state):
     """The state (n,) of an orbit x (K, n + 2) at a phase, before an impact there."""
     n, K, length, work = f.A.shape[0], len(x), math.pi * f.half_turns, b.work[0]
@@ -123,7 +123,7 @@ def state_at(f, c, x, phase, b, state):
         state[r] = sign * total
 
 
-@jit
+@small
 def outside(path, place):
     for j in range(2):
         if not path.bounds[j, 0] <= place.p[j] <= path.bounds[j, 1]:
@@ -131,7 +131,7 @@ def outside(path, place):
     return False
 
 
-@jit
+@small
 def offset(c, a, b, k):
     """Unknown k of those over which distances are measured, from a to b: phases, jumps, parameters, theta."""
     K, n = len(a.x), a.x.shape[1] - 2
@@ -143,7 +143,7 @@ def offset(c, a, b, k):
     return (b.p[k] - a.p[k]) / (c.unit[k] if k < 2 else 1.0)
 
 
-@jit
+@small
 def rate(c, a, k):
     """The same of the tangent."""
     K, n = len(a.x), a.x.shape[1] - 2
@@ -154,13 +154,13 @@ def rate(c, a, k):
     return a.tangent_p[index_of(c, k - 2 * K)]
 
 
-@jit
+@small
 def measured(c, a):
     """The number of unknowns by which distances are measured."""
     return 2 * len(a.x) + unknowns(c)
 
 
-@jit
+@small
 def bulges(path, c, a, b):
     """Whether a parameter leaves its bounds between a and b and returns: by the cubic through both with tangents."""
     length = 0.0
@@ -181,7 +181,7 @@ def bulges(path, c, a, b):
     return False
 
 
-@jit
+@small
 def comes_back(c, a, first, length):
     """Whether the step from a passes the first point; phases count modulo the forcing period."""
     K, shift = len(a.x), 0.0

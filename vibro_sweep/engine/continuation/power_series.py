@@ -3,7 +3,7 @@
 import numpy as np
 
 from vibro_sweep.engine.continuation.workspace import TERMS
-from vibro_sweep.engine.simd.jit import jit
+from vibro_sweep.engine.simd.jit import small
 
 POWERS = np.array([(0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2), (3, 0), (2, 1), (1, 2), (0, 3)])  # j, k of z^j z*^k
 _PLACE = {tuple(power): place for place, power in enumerate(POWERS.tolist())}
@@ -16,7 +16,7 @@ PRODUCTS = np.array([  # i, j, k: terms i and j make term k
 MIRROR = np.array([_PLACE[k, j] for j, k in POWERS.tolist()])  # of the complex conjugate
 
 
-@jit
+@small
 def times(a, b, out):
     """out = a b, to third order."""
     for i in range(TERMS):
@@ -25,7 +25,7 @@ def times(a, b, out):
         out[PRODUCTS[i, 2]] += a[PRODUCTS[i, 0]] * b[PRODUCTS[i, 1]]
 
 
-@jit
+@small
 def put_wave(turn, shift, jets):
     """jets[3] and jets[4]: cos and sin of a phase plus a shift, a series; turn: e^{i phase}. jets[0], jets[1]: room."""
     power, other, c, s = jets[0], jets[1], turn.real, turn.imag
@@ -42,7 +42,7 @@ def put_wave(turn, shift, jets):
         c, s = -s, c
 
 
-@jit
+@small
 def steady(Z, jets, m):
     """Coefficient m of Re(Z e^{i phi}), of the phase of `put_wave`."""
     return Z.real * jets[3, m] - Z.imag * jets[4, m]

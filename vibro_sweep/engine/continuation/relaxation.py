@@ -10,12 +10,12 @@ import math
 import numpy as np
 
 from vibro_sweep.engine.continuation.moving_flow import OMEGA, law_at
-from vibro_sweep.engine.simd.jit import jit
+from vibro_sweep.engine.simd.jit import small
 
 DIGITS = 53 * math.log(2.0)
 
 
-@jit
+@small
 def time_to_spare(f, c, place, b):
     """The least time between a release by force and the next touch of that stop, over what it has to be, less 1."""
     K, n, omega, least = len(place.x), f.A.shape[0], f.numbers[OMEGA], np.inf
@@ -34,7 +34,7 @@ def time_to_spare(f, c, place, b):
     return least
 
 
-@jit
+@small
 def next_touch(f, c, place, i):
     """The phase of the next event on the stop of event i, which may be itself."""
     K, sign, turns = len(place.x), 1.0, 0.0

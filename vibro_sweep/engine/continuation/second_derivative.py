@@ -11,10 +11,10 @@ kappa = Delta/omega, and ds = (dphi_i+1 - dphi_i)/omega - s d omega/omega,
 
 from vibro_sweep.engine.continuation.lasting import differentiate_last
 from vibro_sweep.engine.continuation.moving_flow import OMEGA, ONE_PLUS_R_HIGH, ONE_PLUS_R_LOW
-from vibro_sweep.engine.simd.jit import jit
+from vibro_sweep.engine.simd.jit import small
 
 
-@jit
+@small
 def differentiate(f, c, place, b, mu):
     """`events.slopes` by (xi, dphi, dD) and `work.slopes_p` by the parameters, for `events.v` and `events.w`; complex.
 
@@ -36,7 +36,7 @@ def differentiate(f, c, place, b, mu):
         differentiate_flight(f, c, place, b, i, mu)
 
 
-@jit
+@small
 def differentiate_event(f, c, place, b, i):
     """Add the terms of rows 1 and 2 of an impact, and of row 1 of an event that lasts."""
     n, N, e, slopes_p = f.A.shape[0], f.A.shape[0] // 2, b.events[i], b.work[0].slopes_p
@@ -51,7 +51,7 @@ def differentiate_event(f, c, place, b, i):
         slopes_p[j] += phi_v * (alpha * gap + beta * R1 * speed) + beta * f.number_slopes[j, one_plus_R] * speed_v
 
 
-@jit
+@small
 def differentiate_flight(f, c, place, b, i, mu):
     """Add the terms of the rows of a flight, and of the event that lasts before it."""
     K, n, N, omega = len(b.events), f.A.shape[0], f.A.shape[0] // 2, f.numbers[OMEGA]
@@ -120,7 +120,7 @@ def differentiate_flight(f, c, place, b, i, mu):
         work.slopes_p[j] += total
 
 
-@jit
+@small
 def turn_carry(f, e):
     """`carry` becomes the change of y itself after an event that lasts: xi and y' (dphi + ds)."""
     n = f.A.shape[0]
@@ -132,7 +132,7 @@ def turn_carry(f, e):
         e.carry[r, n + 1] += rate
 
 
-@jit
+@small
 def take_through(f, e, kappa, work):
     """Add what a flight of another length makes of changes of the state after an event that lasts; `along[4]`: -w E."""
     n, through, back = f.A.shape[0], work.along[3], work.along[4]

@@ -66,14 +66,28 @@ def _relinked(module, before, after):
     return module
 
 
-class _NoInline(_Part):
-    """A part that stays a call: inlined, it would take registers and room from the hot path."""
+class _Marked(_Part):
+    """A part whose functions have an attribute of LLVM's."""
+
+    attribute: str
 
     def add_ir_module(self, ir_module):
         for function in ir_module.functions:
             if not function.is_declaration:
-                function.attributes.add("noinline")
+                function.attributes.add(self.attribute)
         super().add_ir_module(ir_module)
+
+
+class _NoInline(_Marked):
+    """A part that stays a call: inlined, it would take registers and room from the hot path."""
+
+    attribute = "noinline"
+
+
+class _Small(_Marked):
+    """A part that is compiled for its size: loops stay loops, which takes half the time."""
+
+    attribute = "optsize"
 
 
 class _Whole(JITCodeLibrary):
@@ -216,3 +230,9 @@ class NoInlineCompiler(PartCompiler):
     """The compiler of a kernel that only kernels call and that is never inlined."""
 
     library = _NoInline
+
+
+class SmallCompiler(PartCompiler):
+    """The compiler of a kernel that only kernels call and in which they spend little time."""
+
+    library = _Small

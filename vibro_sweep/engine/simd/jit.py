@@ -21,10 +21,10 @@ from numba.core.cpu import CPUTargetOptions
 
 TESTED = ("0.62", "0.63", "0.64", "0.65", "0.66", "0.67", "0.68")  # versions of numba with which compiler.py was tried
 IS_TESTED = ".".join(map(str, numba.version_info.short)) in TESTED
-NoInlineCompiler = PartCompiler = WholeCompiler = None
+NoInlineCompiler = PartCompiler = SmallCompiler = WholeCompiler = None
 if IS_TESTED:
     with contextlib.suppress(Exception):  # internals that are missing: kernels compile plainly
-        from vibro_sweep.engine.simd.compiler import NoInlineCompiler, PartCompiler, WholeCompiler
+        from vibro_sweep.engine.simd.compiler import NoInlineCompiler, PartCompiler, SmallCompiler, WholeCompiler
 
 
 @property
@@ -174,6 +174,11 @@ def noinline(function):
     return _Part(function, NoInlineCompiler)
 
 
+def small(function):
+    """`jit` for what a step does seldom, or what is short beside it: compiled for size, in half the time."""
+    return _Part(function, SmallCompiler)
+
+
 def exactly(function):
     """`jit` for sums and products whose rounding errors are computed: none may be fused."""
     return _Part(function, PartCompiler, fastmath=False)
@@ -255,6 +260,6 @@ def _enable_caching(dispatcher):
 
 
 if not _usable():
-    NoInlineCompiler = PartCompiler = WholeCompiler = None
+    NoInlineCompiler = PartCompiler = SmallCompiler = WholeCompiler = None
 
 AS_ONE = WholeCompiler is not None  # else other multiply-adds are fused, and last digits differ
