@@ -29,7 +29,7 @@ from vibro_sweep.model.outcomes import REASONS
 NEAR_ENDS = (1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12)  # shares of a window from its ends
 CLOSE = 1e-9  # of the range: ends of one window differ by less
 NARROW = 1e-11  # of the range: a window found from a value of a sweep is wider
-RESOLVED = 1e-7  # of the range: in a narrower window differences of simulations are not derivatives
+RESOLVED = 1e-7  # of the range: in a narrower window simulations do not tell orbits inside from those outside
 EXPLAINED = ("in_a_window", "sticking", "not_isolated", "permanent_contact", "unrelaxed")  # reasons that hold
 BESIDE = 1e-8  # of a state: the step of differences
 
@@ -134,6 +134,9 @@ def one_window(report, wrong, window, size) -> None:
     if orbit.sticking.size:
         report.counted["rests"] += 1
         return
+    if compliant and window.hi - window.lo < RESOLVED * size:
+        report.counted["too narrow"] += 1
+        return
     for special, outwards in ((window.lower, -1), (window.upper, 1)):
         try:
             told = check_end(window, special, outwards)
@@ -148,9 +151,6 @@ def one_window(report, wrong, window, size) -> None:
             report.counted["not found inside"] += 1
             continue
         report.counted["inside"] += 1
-        if compliant and window.hi - window.lo < RESOLVED * size:
-            report.counted["too narrow"] += 1
-            continue
         off, largest = off_and_largest(inner)
         if not off < 1e-7 or not inner.ok:
             wrong("not an orbit inside", f"{words}: at {value!r} off {off:.1e}, {inner.status}")

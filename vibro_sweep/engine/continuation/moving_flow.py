@@ -16,7 +16,7 @@ from vibro_sweep.engine.continuation.factors import factorise, square, substitut
 from vibro_sweep.engine.continuation.flight_tables import build_powers, build_series, columns_of
 from vibro_sweep.engine.impulses.extremes import MIDDLE
 from vibro_sweep.engine.impulses.taylor_orders import ORDER
-from vibro_sweep.engine.simd.jit import small
+from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.simd.memory import record
 
 LOW, HIGH, ONE_PLUS_R_LOW, ONE_PLUS_R_HIGH, OMEGA = range(5)  # of `numbers`
@@ -76,20 +76,20 @@ def plane_of(masses: int, compliant: bool = False) -> np.dtype:
     ])  # fmt: skip
 
 
-@small
+@jit
 def moves(f):
     """Whether A depends on a parameter."""
     return f.moves[0] > 0 or f.moves[1] > 0
 
 
-@small
+@jit
 def law_at(f, side):
     """The index in `values` of the stiffness of a compliant stop, which its damping and preload follow."""
     n = f.A.shape[0]
     return n * (n + 2) + (LAWS // 2 if side > 0 else 0)
 
 
-@small
+@jit
 def fit_at(f, p, q):
     """Values and slopes of the polynomials at the parameters (p, q)."""
     s, u = (p - f.centre[0]) / f.reach[0], (q - f.centre[1]) / f.reach[1]
@@ -109,7 +109,7 @@ def fit_at(f, p, q):
         f.slopes[0, i], f.slopes[1, i] = by_s / f.reach[0], by_u / f.reach[1]
 
 
-@small
+@jit
 def take_shift(f, p, q, exact):
     """Let the polynomials pass through the values `exact` at (p, q), or as they are."""
     for i in range(len(f.shift)):
@@ -121,7 +121,7 @@ def take_shift(f, p, q, exact):
                 f.shift[i] = f.exact[i] - f.values[i]
 
 
-@small
+@jit
 def move_exactly(f, p, q):
     """Move the oscillator to the parameters (p, q) with the values `exact`, and slopes of the polynomials. False as of
     `spread`."""
@@ -131,7 +131,7 @@ def move_exactly(f, p, q):
     return spread(f)
 
 
-@small
+@jit
 def spread(f):
     """Matrices, forced motion and tables from `values` and `slopes`. False in the resonance of an undamped mode."""
     n = f.A.shape[0]
@@ -187,7 +187,7 @@ def spread(f):
     return True
 
 
-@small
+@jit
 def build_middle(f):
     """Build the motion of the gap over a cell from its Taylor coefficients."""
     for r in range(f.A.shape[0] + 1):
@@ -200,7 +200,7 @@ def build_middle(f):
                 f.middle[r, k] += f.series[q, 0, r] * f.middle_weights[q, k]
 
 
-@small
+@jit
 def build_swing(f):
     """The same of the steady motion."""
     power, size = 1.0 + 0j, 1.0
@@ -216,7 +216,7 @@ def build_swing(f):
     f.swing_rest *= math.sqrt(square(f.Z[0]))
 
 
-@small
+@jit
 def by_push(f, A, W, r):
     """Row r of the first column of A_uq (W - 1): of both matrices, or of the slope of one of them."""
     N, total = f.A.shape[0] // 2, 0.0
@@ -225,7 +225,7 @@ def by_push(f, A, W, r):
     return total
 
 
-@small
+@jit
 def move_to(f, p, q):
     """Numbers and tables at the parameters (p, q)."""
     fit_at(f, p, q)
