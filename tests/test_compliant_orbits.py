@@ -12,6 +12,7 @@ from support import slow_cases
 from support.compliant_bifurcations import PAPER, one_mass, paper
 
 import vibro_sweep as vs
+from vibro_sweep.analysis.periodic import resting_orbit
 from vibro_sweep.analysis.periodic.periodic_orbit import orbit_of
 
 
@@ -273,15 +274,28 @@ def test_orbits_that_attract_are_found_by_their_contacts():
 
 
 @pytest.mark.parametrize("stops", [dict(k_stop=29), dict(R=0.8)], ids=["elastic", "rigid"])
-@pytest.mark.parametrize("unsettled", [1e-8, -1e-8])
-def test_an_orbit_that_has_nearly_settled(stops, unsettled):
-    """Its first contact comes again a little before a period is over, and was then counted twice."""
+@pytest.mark.parametrize("unsettled", [1e-8, -1e-8, 1e-4, -1e-4])
+@pytest.mark.parametrize("share", [-0.01, 1e-9])
+def test_an_orbit_that_has_nearly_settled(stops, unsettled, share):
+    """Its first contact comes again a little before a period is over, or after it, and was counted twice, or not."""
     system = one_mass(**({"k_stop": None} | stops))
     orbit = vs.periodic_orbit(system, itinerary="R")
     first = (orbit.contacts["t_touch"] if "k_stop" in stops else orbit.impacts["t"])[0]
-    before = first - 0.01 * system.period
-    state = orbit.sample([before])[0] + unsettled * np.array([1.0, 1.0])
-    later = system.replace(tau=system.tau + system.omega * before)
+    begin = first + share * system.period
+    state = orbit.sample([begin])[0] + unsettled * np.array([0.0, 1.0])
+    later = system.replace(tau=system.tau + system.omega * begin)
     again = vs.periodic_orbit(later, state=state, periods=1)
     assert again.ok and again.itinerary == "R"
     np.testing.assert_allclose(np.sort(again.multipliers), np.sort(orbit.multipliers), rtol=0, atol=1e-9)
+
+
+def test_a_guess_without_a_motion_is_no_traceback(monkeypatch):
+    """Its states follow from a system of equations that may be singular."""
+    system = one_mass(release="force")
+    state = vs.periodic_orbit(system, itinerary="R").state
+
+    def singular(*_):
+        raise np.linalg.LinAlgError("Singular matrix")
+
+    monkeypatch.setattr(resting_orbit.np.linalg, "solve", singular)
+    assert vs.periodic_orbit(system, state=state).status == "not_converged"

@@ -4,6 +4,7 @@ The unknowns are the times and impulses of the impacts, so that nothing is singu
 """
 
 from collections.abc import Iterator
+from contextlib import suppress
 from itertools import pairwise
 
 import numpy as np
@@ -31,7 +32,7 @@ SEEDS = 4000
 AT_ONCE = 250  # of them: the orbit may be among the first
 MOMENTS = 24
 SAME = 1e-7  # relative difference of solutions from two seeds that are one, and in parts of their units
-ROUNDING, UNSETTLED, ALIKE = 1e-9, 1e-6, 1e-3  # of a period; the same of an orbit near it; of speeds, relative
+ROUNDS = 4  # periods that are simulated, so that a whole one begins between any two of its events
 MOST_PERIODS = 10**6
 MOST_IMPACTS = 1000  # of an itinerary: each has thousands of seeds
 
@@ -117,23 +118,32 @@ def _from_state(system, family, state, periods) -> PeriodicOrbit:
     if str(simulated.status) != "ok":
         return PeriodicOrbit(system, "not_converged")
     if family.linear.compliant:
-        return _from_contacts(system, family, simulate(system, state, 2 * periods), periods)
+        return _from_contacts(system, family, simulate(system, state, ROUNDS * periods), periods)
     if len(simulated.sticking):
         return _from_rests(system, family, simulate(system, state, 2 * periods), periods)
-    impacts = simulated.impacts
-    impacts = impacts[_within_a_period(impacts["t"], impacts["side"], impacts["v1"], periods * system.period)]
-    return _from_guess(system, family, [(i["t"], i["side"], i["v1"]) for i in impacts], periods)
+    impacts = simulate(system, state, ROUNDS * periods).impacts
+    which, earlier = _of_one_period(impacts["t"], periods * system.period)
+    rows = zip(impacts["t"][which] - earlier, impacts["side"][which], impacts["v1"][which], strict=True)
+    return _from_guess(system, family, list(rows), periods)
 
 
-def _within_a_period(t, sides, speeds, P: float) -> np.ndarray:
-    """Which events are those of a period from the first one on. That comes again, with its side and its speed, after P
-    but for what is left of the transient."""
-    again = (sides == sides[:1]) & (np.abs(speeds - speeds[:1]) <= ALIKE * np.abs(speeds[:1]))
-    return t < t[:1] + P * (1 - np.where(again, UNSETTLED, ROUNDING))
+def _of_one_period(t: np.ndarray, P: float) -> tuple[np.ndarray, np.ndarray]:
+    """The events of one period, in the order from the first one on, and what their times are to be less by.
+
+    The period begins in the middle of the longest time between two events: an orbit near the periodic one comes back a
+    little early or late, so that from an event on it may have that event twice.
+    """
+    if len(t) < 2:
+        return np.arange(len(t)), np.zeros(len(t))
+    k = int(np.argmax(np.diff(t[: np.count_nonzero(t <= t[0] + P) + 1])))
+    begin = (t[k] + t[k + 1]) / 2
+    which = np.flatnonzero((t > begin) & (t <= begin + P))
+    which = which[np.argsort(which % max(1, len(which)))]
+    return which, which // max(1, len(which)) * P
 
 
 def _from_contacts(system, family, simulated, periods) -> PeriodicOrbit:
-    """The orbit from a simulation over two periods in which the mass presses compliant stops."""
+    """The orbit from a simulation over some periods in which the mass presses compliant stops."""
     if len(simulated.sticking):
         return PeriodicOrbit(system, "sticking")
     contacts, impacts, P = simulated.contacts, simulated.impacts, periods * system.period
@@ -143,13 +153,16 @@ def _from_contacts(system, family, simulated, periods) -> PeriodicOrbit:
     if not events and len(contacts) and np.isnan(contacts["t_release"][-1]):
         return PeriodicOrbit(system, "permanent_contact")
     t, sides, D, ends = np.array(events, float).reshape(-1, 4).T
-    within = _within_a_period(t, sides, D, P)
-    t, sides, D, ends = (values[within] for values in (t, sides, D, ends))
-    guess = Solution(family, 1, 2 * periods, (), np.empty(0)).with_events(sides, t, D, ends)
+    which, earlier = _of_one_period(t, P)
+    none = Solution(family, 1, 2 * periods, (), np.empty(0))
+    guess = none.with_events(sides[which], t[which] - earlier, D[which], ends[which] - earlier)
     if len(guess.rests) < np.count_nonzero(guess.contacts) or not np.all(np.isfinite(guess.u)):
         return PeriodicOrbit(system, "not_converged")
-    if (found := guess.corrected()) is None and not guess.relaxes:
-        return PeriodicOrbit(system, "unrelaxed")
+    found = guess.corrected()
+    if found is None and family.linear.by_force:
+        with suppress(np.linalg.LinAlgError):  # the guess has no motion
+            if not guess.relaxes:
+                return PeriodicOrbit(system, "unrelaxed")
     return found_orbit(system, found)
 
 
@@ -159,7 +172,7 @@ def _from_rests(system, family, simulated, periods) -> PeriodicOrbit:
     if np.any(R(simulated.sticking["side"]) != 0) or str(simulated.status) != "ok" or not len(impacts):
         return PeriodicOrbit(system, "sticking")
     begin = impacts["t"][0]
-    impacts = impacts[_within_a_period(impacts["t"], impacts["side"], impacts["v1"], P)]
+    impacts = impacts[impacts["t"] < begin + P * (1 - 1e-9)]  # a rest forgets what was before: it has settled
     resting = simulated.sticking
     resting = resting[(resting["t_on"] > begin - 1e-9 * P) & (resting["t_on"] < begin + P * (1 - 1e-9))]
     rests = tuple(int(np.argmin(np.abs(impacts["t"] - t))) for t in resting["t_on"])

@@ -13,7 +13,7 @@ from vibro_sweep.engine.simd.lanes import LANES, bits
 from vibro_sweep.engine.simd.memory import eight, put_eight
 
 SUM, MEAN = range(2)  # of `work.pressing`
-FINER = 1.5  # parts of a contact in 1 over its rate
+PARTS_PER_TIME_CONSTANT = 1.5  # of a contact
 MOST_PARTS = 1 << 17  # of a contact: a longer one, of a stop with a strong damper, is not computed
 
 
@@ -21,7 +21,7 @@ MOST_PARTS = 1 << 17  # of a contact: a longer one, of a stop with a strong damp
 def parts_of(f, side, length):
     """The number of parts in which a contact is computed: their length times its rates is 0.7 at most. 0: too many."""
     law = law_at(f, side)
-    rate = 1.0 / f.width + FINER * (math.sqrt(f.values[law]) + f.values[law + 1])
+    rate = 1.0 / f.width + PARTS_PER_TIME_CONSTANT * (math.sqrt(f.values[law]) + f.values[law + 1])
     count = abs(length) / f.numbers[OMEGA] * rate
     return int(count) + 1 if count < MOST_PARTS else 0
 

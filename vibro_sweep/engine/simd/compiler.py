@@ -85,7 +85,7 @@ class _NoInline(_Marked):
 
 
 class _Small(_Marked):
-    """A part that is compiled for its size: loops stay loops, which takes half the time."""
+    """A part that is compiled for its size: loops stay loops, of which LLVM makes half as much code."""
 
     attribute = "optsize"
 

@@ -175,7 +175,7 @@ def noinline(function):
 
 
 def small(function):
-    """`jit` for what a step does seldom, or what is short beside it: compiled for size, in half the time."""
+    """`jit` for what a step does seldom, or what is short beside it: compiled for size, which takes LLVM less time."""
     return _Part(function, SmallCompiler)
 
 
