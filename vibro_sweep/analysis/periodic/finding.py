@@ -33,6 +33,7 @@ AT_ONCE = 250  # of them: the orbit may be among the first
 MOMENTS = 24
 SAME = 1e-7  # relative difference of solutions from two seeds that are one, and in parts of their units
 ROUNDS = 4  # periods that are simulated, so that a whole one begins between any two of its events
+ROUNDING = 1e-9  # of a period
 MOST_PERIODS = 10**6
 MOST_IMPACTS = 1000  # of an itinerary: each has thousands of seeds
 
@@ -122,24 +123,30 @@ def _from_state(system, family, state, periods) -> PeriodicOrbit:
     if len(simulated.sticking):
         return _from_rests(system, family, simulate(system, state, 2 * periods), periods)
     impacts = simulate(system, state, ROUNDS * periods).impacts
-    which, earlier = _of_one_period(impacts["t"], periods * system.period)
-    rows = zip(impacts["t"][which] - earlier, impacts["side"][which], impacts["v1"][which], strict=True)
-    return _from_guess(system, family, list(rows), periods)
+    found = PeriodicOrbit(system, "not_converged")
+    for which, earlier in _of_one_period(impacts["t"], simulated.start_time, periods * system.period):
+        rows = zip(impacts["t"][which] - earlier, impacts["side"][which], impacts["v1"][which], strict=True)
+        found = _from_guess(system, family, list(rows), periods)
+        if found.status == "ok":
+            break
+    return found
 
 
-def _of_one_period(t: np.ndarray, P: float) -> tuple[np.ndarray, np.ndarray]:
+def _of_one_period(t: np.ndarray, start: float, P: float) -> Iterator[tuple[np.ndarray, np.ndarray]]:
     """The events of one period, in the order from the first one on, and what their times are to be less by.
 
-    The period begins in the middle of the longest time between two events: an orbit near the periodic one comes back a
-    little early or late, so that from an event on it may have that event twice.
+    First the period begins in the middle of the longest time between two events: an orbit near the periodic one comes
+    back a little early or late, so that from an event on it may have that event twice. Then it is the first from the
+    start on, since an unstable orbit has been left soon.
     """
-    if len(t) < 2:
-        return np.arange(len(t)), np.zeros(len(t))
-    k = int(np.argmax(np.diff(t[: np.count_nonzero(t <= t[0] + P) + 1])))
-    begin = (t[k] + t[k + 1]) / 2
-    which = np.flatnonzero((t > begin) & (t <= begin + P))
-    which = which[np.argsort(which % max(1, len(which)))]
-    return which, which // max(1, len(which)) * P
+    if len(t) > 1:
+        k = int(np.argmax(np.diff(t[: np.count_nonzero(t <= t[0] + P) + 1])))
+        begin = (t[k] + t[k + 1]) / 2
+        which = np.flatnonzero((t > begin) & (t <= begin + P))
+        which = which[np.argsort(which % max(1, len(which)))]
+        yield which, which // max(1, len(which)) * P
+    which = np.flatnonzero((t < t[:1] + P * (1 - ROUNDING)) & (t < start + P))
+    yield which, np.zeros(len(which))
 
 
 def _from_contacts(system, family, simulated, periods) -> PeriodicOrbit:
@@ -153,13 +160,21 @@ def _from_contacts(system, family, simulated, periods) -> PeriodicOrbit:
     if not events and len(contacts) and np.isnan(contacts["t_release"][-1]):
         return PeriodicOrbit(system, "permanent_contact")
     t, sides, D, ends = np.array(events, float).reshape(-1, 4).T
-    which, earlier = _of_one_period(t, P)
-    none = Solution(family, 1, 2 * periods, (), np.empty(0))
-    guess = none.with_events(sides[which], t[which] - earlier, D[which], ends[which] - earlier)
+    none, found = Solution(family, 1, 2 * periods, (), np.empty(0)), PeriodicOrbit(system, "not_converged")
+    for which, earlier in _of_one_period(t, simulated.start_time, P):
+        guess = none.with_events(sides[which], t[which] - earlier, D[which], ends[which] - earlier)
+        found = _corrected(system, guess)
+        if found.status == "ok":
+            break
+    return found
+
+
+def _corrected(system, guess: Solution) -> PeriodicOrbit:
+    """The orbit from a guess of contacts with compliant stops."""
     if len(guess.rests) < np.count_nonzero(guess.contacts) or not np.all(np.isfinite(guess.u)):
         return PeriodicOrbit(system, "not_converged")
     found = guess.corrected()
-    if found is None and family.linear.by_force:
+    if found is None and guess.family.linear.by_force:
         with suppress(np.linalg.LinAlgError):  # the guess has no motion
             if not guess.relaxes:
                 return PeriodicOrbit(system, "unrelaxed")
@@ -172,7 +187,7 @@ def _from_rests(system, family, simulated, periods) -> PeriodicOrbit:
     if np.any(R(simulated.sticking["side"]) != 0) or str(simulated.status) != "ok" or not len(impacts):
         return PeriodicOrbit(system, "sticking")
     begin = impacts["t"][0]
-    impacts = impacts[impacts["t"] < begin + P * (1 - 1e-9)]  # a rest forgets what was before: it has settled
+    impacts = impacts[impacts["t"] < begin + P * (1 - ROUNDING)]  # a rest forgets what was before: it has settled
     resting = simulated.sticking
     resting = resting[(resting["t_on"] > begin - 1e-9 * P) & (resting["t_on"] < begin + P * (1 - 1e-9))]
     rests = tuple(int(np.argmin(np.abs(impacts["t"] - t))) for t in resting["t_on"])
