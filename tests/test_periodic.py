@@ -50,6 +50,16 @@ def test_orbit_from_a_recorded_state(thirteen):
     agrees_with_simulation(orbit, 1e-11)
 
 
+def test_an_orbit_that_several_periods_lead_away_from():
+    """The state is near an unstable orbit: the impacts of its first period tell it, those of the fourth do not."""
+    system = PAPER.replace(b=0.5)
+    state = [0.3962101635644616, -0.45026096898370377, 0.18543986559557998, 0.00594555747505903]
+    assert len(vs.simulate(system, state, 1).impacts) == 4 and len(vs.simulate(system, state, 4).impacts) != 16
+    orbit = vs.periodic_orbit(system, state=state, periods=1)
+    assert orbit.ok and not orbit.stable and len(orbit.impacts) == 4
+    agrees_with_simulation(orbit, 1e-9)
+
+
 @pytest.mark.parametrize("late", [0.0, 1e-12, -1e-12])
 def test_impact_at_the_section(late):
     """The state at t = 0 is the one before an impact there, which comes again at the end of the period."""
