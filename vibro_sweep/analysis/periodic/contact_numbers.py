@@ -4,7 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.engine.continuation.contact_map import MOST_PARTS, PARTS_PER_TIME_CONSTANT
+from vibro_sweep.engine.continuation.lasting import PER_TIME_CONSTANT
+from vibro_sweep.engine.continuation.lasting_map import MOST_HALVINGS
 from vibro_sweep.engine.continuation.moving_flow import NUMBERS
 from vibro_sweep.engine.impulses.flow import contact_coordinates
 from vibro_sweep.model.linear import STEP, Linear, forcing_period
@@ -55,7 +56,8 @@ def which_press(q: Linear) -> np.ndarray | None:
 def presses_too_long(q: Linear) -> bool:
     """Whether a contact with a stop that lasts for a forcing period takes more parts than are computed."""
     laws = np.array(numbers_of(q, Units(1.0, 1.0))[:-NUMBERS]).reshape(-1, 3)
-    return bool(np.any(PARTS_PER_TIME_CONSTANT * (np.sqrt(laws[:, 0]) + laws[:, 1]) * forcing_period(q) > MOST_PARTS))
+    rates = PER_TIME_CONSTANT * (np.sqrt(laws[:, 0]) + laws[:, 1])
+    return bool(np.any(rates * forcing_period(q) > 1 << MOST_HALVINGS))
 
 
 def is_smooth(q: Linear, side: int) -> bool:

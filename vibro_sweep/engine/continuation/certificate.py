@@ -6,7 +6,8 @@ import numpy as np
 
 from vibro_sweep.engine.continuation.chatter_sum import NEXT
 from vibro_sweep.engine.continuation.flight_tables import polynomial
-from vibro_sweep.engine.continuation.lasting import hold_of, leaves_slowly, speed_after, take_releases
+from vibro_sweep.engine.continuation.lasting import leaves_slowly, speed_after, take_releases
+from vibro_sweep.engine.continuation.lasting_event import hold_of
 from vibro_sweep.engine.continuation.moving_flow import HIGH, LOW, OMEGA
 from vibro_sweep.engine.continuation.problem import GRAZE, STICK
 from vibro_sweep.engine.impulses.extremes import OVERLAP, extremes_of_cell, turns_near

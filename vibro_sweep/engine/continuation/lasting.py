@@ -1,20 +1,19 @@
 """Events that last: a rest where R = 0, or a contact with a compliant stop. Which of them it is, is asked here alone.
 
-`compliant` is `Problem.compliant`. Where it is None the branches with contacts are not compiled.
+`compliant` is `Problem.compliant`.
 """
+
+import math
 
 import numpy as np
 
-from vibro_sweep.engine.continuation.compliant_contact import contact, least_depth, press_gap
-from vibro_sweep.engine.continuation.constrained_gap import constrain_gap, press, rest
-from vibro_sweep.engine.continuation.contact_derivative import differentiate_contact
-from vibro_sweep.engine.continuation.contact_power_series import press_series
-from vibro_sweep.engine.continuation.moving_flow import HIGH, LOW, ONE_PLUS_R_HIGH, ONE_PLUS_R_LOW, law_at
+from vibro_sweep.engine.continuation.moving_flow import ONE_PLUS_R_HIGH, ONE_PLUS_R_LOW, law_at
 from vibro_sweep.engine.continuation.problem import GRAZE
 from vibro_sweep.engine.continuation.relaxation import time_to_spare
 from vibro_sweep.engine.continuation.workspace import TEST
 from vibro_sweep.engine.simd.jit import jit
 
+PER_TIME_CONSTANT = 1.5  # of a contact: what its rates count beside those of the free motion
 ROUNDED = 1e-12  # of numbers of size 1, between polynomials
 OUTWARDS = 1e-6  # speed, in units of a branch: more than what is left of it beside a graze
 
@@ -26,6 +25,47 @@ def is_contact(compliant, side):
         return False
     else:
         return compliant[1 if side > 0 else 0]
+
+
+@jit
+def put_force(f, compliant, side, values, free, force):
+    """force: the acceleration that the stop takes from the gap, by Z (lasting_map.py); free: the gap's free one, which
+    a rest takes whole."""
+    n, law = f.A.shape[0], law_at(f, side)
+    for k in range(n + 4):
+        force[k] = 0.0 if is_contact(compliant, side) else free[k]
+    if is_contact(compliant, side):
+        force[0], force[n // 2], force[n + 2] = values[law], values[law + 1], side * values[law + 2]
+
+
+@jit
+def moves_on(compliant, side, r, N):
+    """Whether coordinate r goes on when the event begins: its gap is at its stop, and a rest loses its velocity."""
+    return r != 0 and (r != N or is_contact(compliant, side))
+
+
+@jit
+def rate_of(f, compliant, side):
+    """The fastest rate of the force, beside those of the free motion."""
+    return PER_TIME_CONSTANT * force_scale(f, compliant, side) if is_contact(compliant, side) else 0.0
+
+
+@jit
+def force_scale(f, compliant, side):
+    """What the force is divided by in row 2: that of a contact is of the size of a speed then."""
+    law = law_at(f, side)
+    return math.sqrt(f.values[law]) + f.values[law + 1] if is_contact(compliant, side) else 1.0
+
+
+@jit
+def ends_by_force(f, compliant, side, speed):
+    """Whether an event that ends with this gap velocity ends where the force is 0: a rest, or a contact whose force
+    vanishes before the gap is at its stop."""
+    law = law_at(f, side)
+    if not is_contact(compliant, side):
+        return True
+    c, p = f.values[law + 1], f.values[law + 2]
+    return f.by_force > 0 and c != 0.0 and (p == 0.0 or side * c * speed + p < 0.0)
 
 
 @jit
@@ -152,60 +192,9 @@ def factor_of_grazes(f, c, place):
 
 
 @jit
-def last(f, compliant, side, x, e, work):
-    """`after`, `carry`, `pull` and `release` of an event that lasts."""
-    if compliant is None:
-        rest(f, side, x, e, work.resting)
-    elif is_contact(compliant, side):
-        contact(f, side, x, e, work)
-    else:
-        rest(f, side, x, e, work.resting)
-
-
-@jit
-def differentiate_last(f, compliant, side, x, e, through, work):
-    """Add the terms of a contact to the derivative along a null vector; curves of orbits that rest are not followed."""
-    if compliant is not None:
-        differentiate_contact(f, side, x, e, through, work)
-
-
-@jit
-def last_series(f, compliant, side, x, e, y, work):
-    """The state y after a contact, and its rows, as power series."""
-    if compliant is not None:
-        press_series(f, side, x, e, y, work)
-
-
-@jit
 def has_rests(c):
     """Whether the orbit rests on a rigid stop."""
     for i in range(len(c.rests)):
         if leaves_slowly(c, i):
             return True
     return False
-
-
-@jit
-def state_within(f, compliant, side, x, delay, e, work, state):
-    """The whole motion (n,) so long after the event has begun."""
-    n, room = f.A.shape[0], work.resting
-    if compliant is None:
-        constrain_gap(f, side, x, delay, e, room)
-    elif is_contact(compliant, side):
-        press_gap(f, side, x, delay, e, work)
-        room[0, 0, n] += f.numbers[HIGH if side > 0 else LOW]
-    else:
-        constrain_gap(f, side, x, delay, e, room)
-    for r in range(n):
-        state[r] = room[0, r, n]
-
-
-@jit
-def hold_of(f, compliant, side, x, e, work):
-    """What keeps it up: the least acceleration into the stop during a rest, the least depth of a contact."""
-    if compliant is None:
-        return press(f, side, x, e, work)
-    elif is_contact(compliant, side):
-        return least_depth(f, side, x, e, work)
-    else:
-        return press(f, side, x, e, work)

@@ -17,9 +17,9 @@ import numpy as np
 
 from vibro_sweep.engine.continuation.conditions import expand, multiplier, put_matrix
 from vibro_sweep.engine.continuation.factors import factorise, square, substitute
-from vibro_sweep.engine.continuation.lasting import last_series
+from vibro_sweep.engine.continuation.lasting_series import last_series
 from vibro_sweep.engine.continuation.moving_flow import OMEGA, ONE_PLUS_R_HIGH, ONE_PLUS_R_LOW
-from vibro_sweep.engine.continuation.power_series import MIRROR, POWERS, put_wave, steady, times
+from vibro_sweep.engine.continuation.power_series import MIRROR, POWERS, grow, put_wave, steady
 from vibro_sweep.engine.continuation.problem import FLIP
 from vibro_sweep.engine.continuation.reflections import take_down
 from vibro_sweep.engine.continuation.workspace import TERMS
@@ -45,48 +45,28 @@ def meet(f, one_plus_R, e, D, series, y, jets, left):
     N, R1 = f.A.shape[0] // 2, f.numbers[one_plus_R]
     put_wave(e.turn, series[0], jets)
     for m in range(TERMS):
-        left[0, m] = y[0, m] + steady(f.Z[0], jets, m)
-        left[1, m] = series[1, m] + R1 * (y[N, m] + steady(f.Z[N], jets, m))
+        left[0, m] = y[0, m] + steady(f.Z[0], jets[3], jets[4], m)
+        left[1, m] = series[1, m] + R1 * (y[N, m] + steady(f.Z[N], jets[3], jets[4], m))
     left[1, 0] += D
 
 
 @small
-def fly_series(f, e, delay, y, landing, turned, power, other):
-    """y becomes E exp(A delay/omega) (y, 1), all power series; power becomes those of delay.
+def fly_series(f, e, delay, y, landing, turned, jets):
+    """y becomes E exp(A delay/omega) (y, 1), all power series.
 
-    landing, turned : room like y; other: (TERMS,)
+    landing, turned : room like y
     """
-    n, omega = f.A.shape[0], f.numbers[OMEGA]
-    for r in range(n):
-        for m in range(TERMS):
-            landing[r, m] = y[r, m]
+    n = f.A.shape[0]
     for m in range(TERMS):
-        power[m] = 0.0
-    power[0] = 1.0
-    constant, weight = 1.0, 1.0
-    for k in range(1, 4):  # terms A^k delay^k/k! of (y, 1)
-        times(power, delay, other)
-        for m in range(TERMS):
-            power[m] = other[m]
+        y[n, m] = 1.0 if m == 0 else 0.0
+    grow(f.A, n, n + 1, 1.0 / f.numbers[OMEGA], delay, y, landing, turned, jets)
+    for m in range(TERMS):
+        for r in range(n + 1):
+            landing[r, m] = y[r, m]
         for r in range(n):
-            for m in range(TERMS):
-                turned[r, m] = 0.0
-                for q in range(n):
-                    turned[r, m] += f.A[r, q] * y[q, m]
-            turned[r, 0] += f.A[r, n] * constant
-        constant = 0.0
-        weight /= k * omega
-        for r in range(n):
-            times(power, turned[r], other)
-            for m in range(TERMS):
-                y[r, m] = turned[r, m]
-                landing[r, m] += weight * other[m]
-    for r in range(n):
-        for m in range(TERMS):
             y[r, m] = 0.0
-            for q in range(n):
+            for q in range(n + 1):
                 y[r, m] += e.E[0, r, q] * landing[q, m]
-        y[r, 0] += e.E[0, r, n]
 
 
 @small
@@ -96,7 +76,7 @@ def residuals(f, c, place, b, mu):
     N = n // 2
     work = b.work[0]
     y, landing, turned = work.states[0], work.states[1], work.states[2]
-    power, other, delay = work.jets[0], work.jets[1], work.jets[2]
+    delay = work.jets[2]
     for r in range(n):
         for m in range(TERMS):
             y[r, m] = work.first[r, m]
@@ -116,7 +96,7 @@ def residuals(f, c, place, b, mu):
                 y[N, m] += e.series[1, m]
             y[N, 0] += D
         delay[0] = 0.0
-        fly_series(f, e, delay, y, landing, turned, power, other)
+        fly_series(f, e, delay, y, landing, turned, work.jets)
     for r in range(n):
         for m in range(1, TERMS):
             work.closing[r, m] = c.sigma * factor_of(mu, m) * work.first[r, m] - y[r, m]

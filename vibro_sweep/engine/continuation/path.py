@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from vibro_sweep.engine.continuation.flight_tables import flight
-from vibro_sweep.engine.continuation.lasting import state_within
+from vibro_sweep.engine.continuation.lasting_event import state_within
 from vibro_sweep.engine.continuation.moving_flow import OMEGA
 from vibro_sweep.engine.continuation.problem import index_of, unknowns
 from vibro_sweep.engine.continuation.residual import approach, leave

@@ -43,6 +43,33 @@ def put_wave(turn, shift, jets):
 
 
 @small
-def steady(Z, jets, m):
-    """Coefficient m of Re(Z e^{i phi}), of the phase of `put_wave`."""
-    return Z.real * jets[3, m] - Z.imag * jets[4, m]
+def steady(Z, cos, sin, m):
+    """Coefficient m of Re(Z e^{i phi})."""
+    return Z.real * cos[m] - Z.imag * sin[m]
+
+
+@small
+def grow(G, rows, columns, rate, delay, y, term, turned, jets):
+    """y (columns, TERMS) becomes exp(G rate delay) y, delay a series; G has so many rows, what is below stays.
+
+    term, turned : room like y; jets: as of `put_wave`
+    """
+    power, other = jets[0], jets[1]
+    for m in range(TERMS):
+        power[m] = 1.0 if m == 0 else 0.0
+        for r in range(columns):
+            term[r, m] = y[r, m]
+    for k in range(1, 4):
+        times(power, delay, other)
+        for m in range(TERMS):
+            power[m] = other[m] * rate / k
+            for r in range(columns):
+                turned[r, m] = 0j
+                if r < rows:
+                    for q in range(columns):
+                        turned[r, m] += G[r, q] * term[q, m]
+        for r in range(columns):
+            times(power, turned[r], other)
+            for m in range(TERMS):
+                term[r, m] = turned[r, m]
+                y[r, m] += other[m]

@@ -21,9 +21,9 @@ import cmath
 import math
 
 from vibro_sweep.engine.continuation.chatter_tail import end_of_chatter, put_tail
-from vibro_sweep.engine.continuation.constrained_gap import put_rest
 from vibro_sweep.engine.continuation.flight_tables import flight
-from vibro_sweep.engine.continuation.lasting import corner_of, is_watched, last, leaves_at_stop
+from vibro_sweep.engine.continuation.lasting import corner_of, is_watched, leaves_at_stop
+from vibro_sweep.engine.continuation.lasting_event import last, put_lasting
 from vibro_sweep.engine.continuation.moving_flow import HIGH, LOW, OMEGA, ONE_PLUS_R_HIGH, ONE_PLUS_R_LOW
 from vibro_sweep.engine.continuation.problem import STICK, width_of
 from vibro_sweep.engine.continuation.reflections import copy_row, reflect
@@ -231,7 +231,7 @@ def eliminate(f, c, place, b, watched):
         put_rows(f, law, c.sides[i], corner, x, e, panel)
         put_flight(f, law, e, panel)
         if law == REST:
-            put_rest(f, e, panel)
+            put_lasting(f, e, panel)
         if last and f.has_unseen > 0:
             hold(f, panel)
         if c.kind == STICK and last:

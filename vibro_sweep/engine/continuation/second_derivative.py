@@ -9,7 +9,7 @@ kappa = Delta/omega, and ds = (dphi_i+1 - dphi_i)/omega - s d omega/omega,
     - kappa lambda.(A (E (dy + e_v dD) + y1. ds + E_p (y + D e_v, 1)) + A_p (y1, 1))
 """
 
-from vibro_sweep.engine.continuation.lasting import differentiate_last
+from vibro_sweep.engine.continuation.lasting_derivative import differentiate_last
 from vibro_sweep.engine.continuation.moving_flow import OMEGA, ONE_PLUS_R_HIGH, ONE_PLUS_R_LOW
 from vibro_sweep.engine.simd.jit import small
 

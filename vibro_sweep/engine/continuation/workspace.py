@@ -97,12 +97,11 @@ def event_of(masses: int) -> np.dtype:
         ("landing_rate", float, (n,)),  # y' there
         ("defect", float, (n,)),  # its difference from the next state
         ("bend", float, (n,)),  # rho: the jump of y' at it
-        ("carry", float, (n, n + 2 + PARAMETERS)),  # xi after a rest by xi, dphi, ds and the parameters
-        ("pull", float),  # free acceleration of the gap at the end of a rest
+        ("carry", float, (n, n + 2 + PARAMETERS)),  # xi after an event that lasts by xi, dphi, ds and the parameters
+        ("pull", float),  # row 2 of it, see lasting_event.py
         ("release", float, (n + 2 + PARAMETERS,)),  # its derivatives, as of `carry`
-        ("course", float, (ORDER + 1,)),  # its Taylor coefficients in the last part of the rest
-        ("hold", float),  # the least of it during the rest, into the stop
-        ("depth", float),  # of the gap behind its stop at the end of a contact
+        ("hold", float),  # what keeps it up, as of `hold_of`
+        ("depth", float),  # of the gap behind its stop at its end
         ("gap", float),  # before the event
         ("motion", float, 2),  # and its velocity and acceleration
         ("rows", float, (ROWS, n + 2)),  # entries of the scalar rows, by xi, dphi, dD
@@ -139,13 +138,20 @@ def work_of(masses: int) -> np.dtype:
         ("other", float, (3, n, columns_of(n))),
         ("image", float, (n, columns_of(2 * n - 1))),
         ("matrix", float, (n, n)),
-        ("resting", float, (4, n, columns_of(n + PARAMETERS))),  # see constrained_gap.py and compliant_contact.py
-        ("pressing", float, (2, 1 + PARAMETERS, n, columns_of(n + 3))),  # see contact_map.py
-        ("courses", float, (ORDER + 1, columns_of(n + 3))),
-        ("rates", float, (1 + PARAMETERS, n + 2, columns_of(n + 3))),
-        ("generators", float, (2, 1 + PARAMETERS, n + 2, columns_of(n + 3))),  # rates of which there are series
-        ("contact_series", float, (2, 1 + PARAMETERS, ORDER + 1, n, columns_of(n + 3))),
-        ("varied", float, (6, n, columns_of(n + PARAMETERS))),  # see contact_derivative.py
+        ("generator", float, (1 + PARAMETERS, n + 2, columns_of(n + 3))),  # see lasting_map.py
+        ("generators", float, (2, 1 + PARAMETERS, n + 2, columns_of(n + 3))),  # of which there are series
+        ("motion_series", float, (2, 1 + PARAMETERS, ORDER + 1, n, columns_of(n + 3))),
+        ("lasting", float, (1 + PARAMETERS, n + 4, columns_of(n + 3))),
+        ("twice", float, (1 + PARAMETERS, n + 1, columns_of(n + 3))),
+        ("mean", float, (1 + PARAMETERS, columns_of(n + 3))),
+        ("force", float, (1 + PARAMETERS, columns_of(n + 3))),
+        ("start", float, (1 + PARAMETERS, n + 4)),  # see lasting_event.py
+        ("end", float, (1 + PARAMETERS, n + 4)),
+        ("start_rate", float, (n + 4,)),
+        ("moving", float, (n,)),
+        ("row", float, (n + 4,)),
+        ("varied", complex, (n + 4,)),  # see lasting_derivative.py
+        ("rows", complex, (6, n + 4)),
         ("re", float, (n,)),
         ("im", float, (n,)),
         ("cell", float, (ORDER + 1,)),
@@ -166,7 +172,7 @@ def work_of(masses: int) -> np.dtype:
         ("defect", complex),  # see second_derivative.py
         ("first", complex, (n, TERMS)),  # power series of y_1, see normal_form.py
         ("closing", complex, (n, TERMS)),  # and of the last rows
-        ("states", complex, (3, n, TERMS)),
+        ("states", complex, (3, n + 4, TERMS)),
         ("jets", complex, (5, TERMS)),
     ])  # fmt: skip
 
