@@ -15,6 +15,7 @@ from vibro_sweep.model.bifurcations import BY_NAME
 
 MODELS = ("two_mass", "one_mass", "chain", "linear")
 BY_FORCE = 1000  # seeds from there on have `release: force`
+NEAR = 1e-6  # of an orbit to the point of a branch from which it is corrected
 ON_CIRCLE = 1e-6  # of | |mu| - 1 |: so near to it counts are rounding
 
 
@@ -86,8 +87,9 @@ def other_starts(branch, case: Case, rng, most=3):
     count = len(arrays["value"])
     for k in rng.permutation(np.unique(np.r_[1, count - 2, rng.integers(1, count - 1, 3)]))[:most].tolist():
         system = case.orbit.system.replace(**{case.name: float(arrays["value"][k])})
-        found = orbit_at(arrays, k, system)._solution.corrected()
-        if found is not None:
+        there = orbit_at(arrays, k, system)._solution
+        found = there.corrected()  # which from a fold leads anywhere
+        if found is not None and np.abs((found.u - there.u) / there.units).max() < NEAR:
             yield f"point {k}", type(case.orbit)(system, "ok", found.reduced(), None)
 
 

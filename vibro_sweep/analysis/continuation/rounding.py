@@ -43,6 +43,6 @@ def sensitivity(curve: "SolutionCurve", place: Place, row: np.ndarray) -> float:
         if c.kind == STICK:
             curve.workspace.trial[0, 0] -= curve.workspace.trial[-2, 2:] @ curve.workspace.tail[0]["by_end"]
         rows = np.abs(curve.workspace.trial)
-        total = rows[:-1, :2].sum() + rows[-2, 2:].sum() + np.abs(by_rows[: conditions(c)]).sum()
+        total = rows[:-1].sum() + np.abs(by_rows[: conditions(c)]).sum()
         found.append(total * c.unit[j])
     return float(max(found))

@@ -25,7 +25,7 @@ def from_free_motion(start: Solution) -> Solution | None:
     if has_free_gap(q):
         return None
     mean, swing = steady_gap(q)
-    passed = {side: abs(swing) - side * (float(q.stop(side)) - mean) for side in {*start.sides}}
+    passed = {side: abs(swing) - side * (float(q.stop(side)) - mean) for side in _stops(start)}
     if min(passed.values()) <= SHORTEST * abs(swing):
         return None
     one = None
@@ -44,7 +44,7 @@ def _touching(start: Solution) -> Solution | None:
     """The free motion with a contact, or an impact, wherever it passes a stop."""
     q, K = start.family.linear, start.K
     mean, swing = steady_gap(q)
-    angle = {side: math.acos(max(-1.0, side * (float(q.stop(side)) - mean) / abs(swing))) for side in {*start.sides}}
+    angle = {side: math.acos(max(-1.0, side * (float(q.stop(side)) - mean) / abs(swing))) for side in _stops(start)}
     turns = [(side, turn) for side in angle for turn in range(start.half_periods + 2)]
     events = sorted((_time(q, swing, side, angle[side]) + turn * 2 * math.pi / q.omega, side) for side, turn in turns)
     for first in range(len(events) - K):
@@ -58,6 +58,11 @@ def _touching(start: Solution) -> Solution | None:
         passed = times + 2 * np.array([angle[side] for side in sides]) / q.omega
         return guess.with_events(*events, np.minimum(ends, passed))
     return None
+
+
+def _stops(start: Solution) -> set[int]:
+    """The stops that the whole orbit meets."""
+    return {sign * side for side in start.sides for sign in (1, start.sigma)}
 
 
 def _time(q: Linear, swing: complex, side: int, angle: float) -> float:
