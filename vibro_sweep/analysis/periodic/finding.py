@@ -34,6 +34,7 @@ MOMENTS = 24
 SAME = 1e-7  # relative difference of solutions from two seeds that are one, and in parts of their units
 ROUNDS = 4  # periods that are simulated, so that a whole one begins between any two of its events
 ROUNDING = 1e-9  # of a period
+SETTLED = 1e-3  # relative change of the state over the period of an orbit that it is taken to be near
 MOST_PERIODS = 10**6
 MOST_IMPACTS = 1000  # of an itinerary: each has thousands of seeds
 
@@ -118,13 +119,14 @@ def _from_state(system, family, state, periods) -> PeriodicOrbit:
     simulated = simulate(system, state, periods)
     if str(simulated.status) != "ok":
         return PeriodicOrbit(system, "not_converged")
+    settled = np.abs(simulated.section[-1] - state).max() < SETTLED * np.abs(state).max()
     if family.linear.compliant:
-        return _from_contacts(system, family, simulate(system, state, ROUNDS * periods), periods)
+        return _from_contacts(system, family, simulate(system, state, ROUNDS * periods), periods, settled)
     if len(simulated.sticking):
         return _from_rests(system, family, simulate(system, state, 2 * periods), periods)
     impacts = simulate(system, state, ROUNDS * periods).impacts
     found = PeriodicOrbit(system, "not_converged")
-    for which, earlier in _of_one_period(impacts["t"], simulated.start_time, periods * system.period):
+    for which, earlier in _of_one_period(impacts["t"], simulated.start_time, periods * system.period, settled):
         rows = zip(impacts["t"][which] - earlier, impacts["side"][which], impacts["v1"][which], strict=True)
         found = _from_guess(system, family, list(rows), periods)
         if found.status == "ok":
@@ -132,24 +134,25 @@ def _from_state(system, family, state, periods) -> PeriodicOrbit:
     return found
 
 
-def _of_one_period(t: np.ndarray, start: float, P: float) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """The events of one period, in the order from the first one on, and what their times are to be less by.
+def _of_one_period(t: np.ndarray, start: float, P: float, settled: bool) -> list[tuple[np.ndarray, np.ndarray]]:
+    """The events of one period, in the order from the first one on, and what their times are to be less by: twice.
 
-    First the period begins in the middle of the longest time between two events: an orbit near the periodic one comes
-    back a little early or late, so that from an event on it may have that event twice. Then it is the first from the
-    start on, since an unstable orbit has been left soon.
+    Once the period begins in the middle of the longest time between two events: an orbit near the periodic one comes
+    back a little early or late, so that from an event on it may have that event twice. Once it is the first from the
+    start on, which tells more where the orbit has not settled, or is unstable and has been left soon.
     """
-    if len(t) > 1:
-        k = int(np.argmax(np.diff(t[: np.count_nonzero(t <= t[0] + P) + 1])))
-        begin = (t[k] + t[k + 1]) / 2
-        which = np.flatnonzero((t > begin) & (t <= begin + P))
-        which = which[np.argsort(which % max(1, len(which)))]
-        yield which, which // max(1, len(which)) * P
-    which = np.flatnonzero((t < t[:1] + P * (1 - ROUNDING)) & (t < start + P))
-    yield which, np.zeros(len(which))
+    first = np.flatnonzero((t < t[:1] + P * (1 - ROUNDING)) & (t < start + P))
+    if len(t) < 2:
+        return [(first, np.zeros(len(first)))]
+    k = int(np.argmax(np.diff(t[: np.count_nonzero(t <= t[0] + P) + 1])))
+    begin = (t[k] + t[k + 1]) / 2
+    which = np.flatnonzero((t > begin) & (t <= begin + P))
+    which = which[np.argsort(which % max(1, len(which)))]
+    both = [(which, which // max(1, len(which)) * P), (first, np.zeros(len(first)))]
+    return both if settled else both[::-1]
 
 
-def _from_contacts(system, family, simulated, periods) -> PeriodicOrbit:
+def _from_contacts(system, family, simulated, periods, settled) -> PeriodicOrbit:
     """The orbit from a simulation over some periods in which the mass presses compliant stops."""
     if len(simulated.sticking):
         return PeriodicOrbit(system, "sticking")
@@ -161,7 +164,7 @@ def _from_contacts(system, family, simulated, periods) -> PeriodicOrbit:
         return PeriodicOrbit(system, "permanent_contact")
     t, sides, D, ends = np.array(events, float).reshape(-1, 4).T
     none, found = Solution(family, 1, 2 * periods, (), np.empty(0)), PeriodicOrbit(system, "not_converged")
-    for which, earlier in _of_one_period(t, simulated.start_time, P):
+    for which, earlier in _of_one_period(t, simulated.start_time, P, settled):
         guess = none.with_events(sides[which], t[which] - earlier, D[which], ends[which] - earlier)
         found = _corrected(system, guess)
         if found.status == "ok":
