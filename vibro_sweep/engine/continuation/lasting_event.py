@@ -21,7 +21,7 @@ import cmath
 import numpy as np
 
 from vibro_sweep.engine.continuation.lasting import ends_by_force, force_scale, moves_on
-from vibro_sweep.engine.continuation.lasting_map import halvings_of, put_course, put_map, put_step
+from vibro_sweep.engine.continuation.lasting_map import halvings_of, put_force_course, put_gap_course, put_map, put_step
 from vibro_sweep.engine.continuation.moving_flow import HIGH, LOW, OMEGA
 from vibro_sweep.engine.impulses.extremes import OVERLAP, extremes_of_cell
 from vibro_sweep.engine.simd.jit import jit
@@ -56,10 +56,14 @@ def begin(f, compliant, side, x, e, work):
 def put_end(f, work):
     """work.end: E Z and its derivatives by the parameters."""
     n, E, start, end = f.A.shape[0], work.lasting, work.start, work.end
-    for r in range(n + 4):
+    for r in range(n):
         end[0, r] = dot(E[0, r], start[0], n + 4)
         for j in range(1, f.parameters + 1):
             end[j, r] = dot(E[0, r], start[j], n + 4) + dot(E[j, r], start[0], n + 4)
+    for r in range(n, n + 2):
+        end[0, r] = E[0, r, n] * start[0, n] + E[0, r, n + 1] * start[0, n + 1]
+    for j in range(f.parameters + 1):
+        end[j, n + 2], end[j, n + 3] = start[j, n + 2], start[j, n + 3]
 
 
 @jit
@@ -78,7 +82,7 @@ def last(f, compliant, side, x, e, work):
     if by_force:
         put_force_row(f, force_scale(f, compliant, side), e, work)
     else:
-        put_place_row(f, side, s, doublings, e, work)
+        put_place_row(f, s, doublings, e, work)
         e.carry[0, n] = e.carry[0, n + 1] = -dot(B[0, 0], end[0], n)
         for k in range(n + 4):  # d = 0, by the row that this was
             E[0, 0, k] = 0.0
@@ -116,16 +120,11 @@ def put_force_row(f, scale, e, work):
 
 
 @jit
-def put_place_row(f, side, s, doublings, e, work):
+def put_place_row(f, s, doublings, e, work):
     """The same where the gap is back at its stop: row 2 is its mean rate."""
-    n, start, mean, by_length, power = f.A.shape[0], work.start, work.mean, 0.0, 1.0
-    e.pull = dot(mean[0], start[0], n + 4)
-    if doublings == 0:
-        put_gap_course(f, side, start[0], work)
-        for order in range(2, len(work.cell)):
-            by_length += (order - 1) * work.cell[order] * power
-            power *= s
-    else:
+    n, start, mean = f.A.shape[0], work.start, work.mean
+    e.pull, by_length = dot(mean[0], start[0], n + 4), dot(work.mean_slope, start[0], n + 4)
+    if doublings > 0:
         by_length = (dot(work.generator[0, 0], work.end[0], n) - e.pull) / s
     for k in range(n + 4):
         work.row[k] = mean[0, k]
@@ -144,18 +143,10 @@ def put_release(f, by_length, e, work):
 
 
 @jit
-def put_gap_course(f, side, Z, work):
-    """work.cell: Taylor coefficients of d, from Z on."""
-    for k in range(f.A.shape[0] + 4):
-        work.row[k] = 1.0 if k == 0 else 0.0
-    put_course(f, side, work.row, Z, work)
-
-
-@jit
 def hold_of(f, compliant, side, x, e, work):
     """What keeps the event up: the least force into the stop where it turns, of a rest also where it begins; the least
     depth of a contact where it turns back into the stop, and its force only with a release by force."""
-    n, Z, other = f.A.shape[0], work.start[0], work.end[0]
+    n, Z = f.A.shape[0], work.start[0]
     halvings = halvings_of(f, compliant, side, x[n + 1])
     if halvings < 0:
         return np.nan
@@ -165,17 +156,17 @@ def hold_of(f, compliant, side, x, e, work):
     scale = side * force_scale(f, compliant, side)
     work.turning[0] = np.inf if in_contact else dot(work.force[0], Z, n + 4) / scale
     for k in range(1 << halvings):
+        if k > 0:
+            put_end(f, work)
+            for r in range(n + 2):
+                Z[r] = work.end[0, r]
         length = step * OVERLAP if k + 1 < 1 << halvings else step
         if in_contact and step > 0.0:
             put_gap_course(f, side, Z, work)
             lower(side, length, work)
         if (f.by_force > 0 or not in_contact) and step > 0.0:
-            put_course(f, side, work.force[0], Z, work)
+            put_force_course(f, side, Z, work)
             lower(1.0 / scale, length, work)
-        for r in range(n + 4):
-            other[r] = dot(work.lasting[0, r], Z, n + 4)
-        for r in range(n + 4):
-            Z[r] = other[r]
     return work.turning[0]
 
 

@@ -55,8 +55,8 @@ def put_step(f, compliant, side, step, work):
     put_generator(f, compliant, side, work)
     if differ(work.generator, work.generators[k]):
         build_motion(f, work.generator, work.motion_series[k])
-    for j in range(f.parameters + 1):
-        put_polynomials(f, work.motion_series[k, j], step, work.lasting[j], work.mean[j])
+    for j in range(f.parameters, -1, -1):  # the last one leaves the derivative of m by s
+        put_polynomials(f, work.motion_series[k, j], step, work.lasting[j], work.mean[j], work.mean_slope)
     put_turn(f, step, work.lasting[0])
 
 
@@ -91,11 +91,11 @@ def put_rates(f, compliant, side, values, A, rates, force):
 
 
 @jit
-def differ(table, kept):
-    """Whether two tables differ; `kept` becomes the other one."""
+def differ(tables, kept):
+    """Whether two stacks of tables differ; `kept` becomes the other one."""
     found = 0
-    for place in range(0, table.shape[0] * table.shape[1] * table.shape[2], LANES):
-        value = eight(table, place)
+    for place in range(0, tables.shape[0] * tables.shape[1] * tables.shape[2], LANES):
+        value = eight(tables, place)
         found |= bits(abs(value - eight(kept, place)) > 0.0)
         put_eight(kept, place, value)
     return found != 0
@@ -129,16 +129,20 @@ def combined(table, row, count, place):
 
 
 @jit
-def put_polynomials(f, series, step, total, mean):
-    """total (n, ..): sum_k series_k step^k; mean: of its first row (total - 1)/step, from k = 1 on."""
+def put_polynomials(f, series, step, total, mean, mean_slope):
+    """total (n, ..): sum_k series_k step^k; mean: of its first row (total - 1)/step, from k = 1 on; its derivative."""
     wide = total.shape[1]
     size = f.A.shape[0] * wide
     for i in range(0, size, LANES):
         value = eight(series, ORDER * size + i)
+        slope = value * 0.0
         for k in range(ORDER - 1, 0, -1):
+            if i < wide:
+                slope = slope * step + value
             value = value * step + eight(series, k * size + i)
         if i < wide:
             put_eight(mean, i, value)
+            put_eight(mean_slope, i, slope)
         put_eight(total, i, value * step + eight(series, i))
 
 
@@ -175,15 +179,24 @@ def double(f, length, work):
 
 
 @jit
-def put_course(f, side, row, Z, work):
-    """work.cell: Taylor coefficients by phase of row Z, from Z on."""
-    n, series, cell = f.A.shape[0], work.motion_series[1 if side > 0 else 0, 0], work.cell
+def put_gap_course(f, side, Z, work):
+    """work.cell: Taylor coefficients of d by phase, from Z on."""
+    series, cell = work.motion_series[1 if side > 0 else 0, 0], work.cell
+    for order in range(ORDER + 1):
+        cell[order] = series[order, 0, 0] * Z[0]
+        for k in range(1, f.A.shape[0] + 4):
+            cell[order] += series[order, 0, k] * Z[k]
+
+
+@jit
+def put_force_course(f, side, Z, work):
+    """work.cell: the same of q Z."""
+    n, series, cell, row = f.A.shape[0], work.motion_series[1 if side > 0 else 0, 0], work.cell, work.force[0]
     wave, constant = complex(row[n], -row[n + 1]) * complex(Z[n], Z[n + 1]), row[n + 2] + row[n + 3] * Z[n + 3]
     for order in range(ORDER + 1):
         cell[order] = wave.real + constant
         for r in range(n):
-            if row[r] != 0.0:
-                for k in range(n + 4):
-                    cell[order] += row[r] * series[order, r, k] * Z[k]
+            for k in range(n + 4):
+                cell[order] += row[r] * series[order, r, k] * Z[k]
         wave *= 1j / (order + 1)
         constant = 0.0
