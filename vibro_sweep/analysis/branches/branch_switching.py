@@ -21,7 +21,6 @@ from vibro_sweep.model.refusals import not_allowed
 BESIDE = 1e-4  # relative distance of the parameter from a graze
 APART = (1e-2, 1e-3, 1e-4)  # of 1/omega: the flight between the two contacts of an orbit beside a split
 NEAR = 0.1  # of the orbit beside a graze to what its slopes say, in 1/omega and the speed of the gap
-ALONE = 0.1  # of its multipliers from 1: nearer to a pitchfork rounding hides of two orbits which one it is
 
 
 def switch(special: SpecialPoint) -> list[PeriodicOrbit]:
@@ -109,7 +108,7 @@ def _beside(solution: Solution, name: str, impact: int | None) -> Solution | Non
     except np.linalg.LinAlgError:  # a fold as well: no slopes
         return None
     slope = graze.speed_slope if impact is None else graze.distance_slope
-    step, first = math.copysign(BESIDE * size_of(solution, name), slope), None
+    step = math.copysign(BESIDE * size_of(solution, name), slope)
     for _ in range(20):
         try:
             family = solution.family.replace(**{name: value + step})
@@ -120,11 +119,9 @@ def _beside(solution: Solution, name: str, impact: int | None) -> Solution | Non
             found = None
         near = found is not None and found.real and np.abs((found.u - guess.u) / target.units).max(initial=0.0) < NEAR
         if near and is_steady(found, name):
-            if np.abs(found.multipliers - 1).min(initial=np.inf) > ALONE:
-                return found
-            first = first or found
+            return found
         step /= 2
-    return first
+    return None
 
 
 def pressed(graze: Graze, step: float) -> np.ndarray:

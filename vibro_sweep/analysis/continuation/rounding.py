@@ -43,6 +43,7 @@ def sensitivity(curve: "SolutionCurve", place: Place, row: np.ndarray) -> float:
         if c.kind == STICK:
             curve.workspace.trial[0, 0] -= curve.workspace.trial[-2, 2:] @ curve.workspace.tail[0]["by_end"]
         rows = np.abs(curve.workspace.trial)
-        total = rows[:-1].sum() + np.abs(by_rows[: conditions(c)]).sum()
+        flights = rows[-2:-1, 2:] if c.kind == STICK else rows[:-1, 2:]  # in a chatter sequence they vanish
+        total = rows[:-1, :2].sum() + flights.sum() + np.abs(by_rows[: conditions(c)]).sum()
         found.append(total * c.unit[j])
     return float(max(found))

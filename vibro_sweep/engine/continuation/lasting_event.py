@@ -39,7 +39,7 @@ def dot(row, vector, count):
 def begin(f, compliant, side, x, e, work):
     """work.start: Z and its derivatives by the parameters; work.start_rate: Z_phi; work.moving: 0.0 of what is held."""
     n, stop, start, rate = f.A.shape[0], HIGH if side > 0 else LOW, work.start, work.start_rate
-    off = (f.numbers[stop] - e.gap) / f.numbers[OMEGA]
+    off = (f.numbers[stop] - e.gap) / f.numbers[OMEGA]  # Z begins at the stop, where the gap is in the end
     for r in range(n):
         work.moving[r] = moving = 1.0 if moves_on(compliant, side, r, n // 2) else 0.0
         start[0, r] = moving * (x[r] + (f.Z[r] * e.turn).real)
