@@ -33,7 +33,7 @@ BEYOND_THE_SCHEMA = re.compile(
 
 counts = pytest.mark.parametrize(
     "count",
-    [20, pytest.param(2000, marks=pytest.mark.slow), pytest.param(10_000, marks=pytest.mark.soak)],
+    [20, pytest.param(800, marks=pytest.mark.slow), pytest.param(10_000, marks=pytest.mark.soak)],
 )
 run_counts = pytest.mark.parametrize(
     "count",
