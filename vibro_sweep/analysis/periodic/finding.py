@@ -192,9 +192,9 @@ def _from_rests(system, family, simulated, periods) -> PeriodicOrbit:
     begin = impacts["t"][0]
     impacts = impacts[impacts["t"] < begin + P * (1 - ROUNDING)]  # a rest forgets what was before: it has settled
     resting = simulated.sticking
-    resting = resting[(resting["t_on"] > begin - 1e-9 * P) & (resting["t_on"] < begin + P * (1 - 1e-9))]
+    resting = resting[(resting["t_on"] > begin - ROUNDING * P) & (resting["t_on"] < begin + P * (1 - ROUNDING))]
     rests = tuple(int(np.argmin(np.abs(impacts["t"] - t))) for t in resting["t_on"])
-    if not rests or np.abs(impacts["t"][list(rests)] - resting["t_on"]).max() > 1e-9 * P:
+    if not rests or np.abs(impacts["t"][list(rests)] - resting["t_on"]).max() > ROUNDING * P:
         return PeriodicOrbit(system, "sticking")
     u = np.concatenate([impacts["t"], -(1 + R(impacts["side"])) * impacts["v1"], resting["t_off"]])
     found = Solution(family, 1, 2 * periods, tuple(map(int, impacts["side"])), u, 0.0, rests).corrected()
