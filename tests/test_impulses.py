@@ -8,7 +8,7 @@ from support.oscillators import PAPER
 
 import vibro_sweep as vs
 from vibro_sweep.analysis.periodic.event_equations import EventEquations
-from vibro_sweep.analysis.periodic.motion_between import contacts_of, multipliers_of
+from vibro_sweep.analysis.periodic.orbit_multipliers import contacts_of, multipliers_of
 from vibro_sweep.engine.impulses.flow import flow
 from vibro_sweep.engine.impulses.free_modes import MOST_CELLS, ResonanceError, TooStiffError
 from vibro_sweep.model.linear import family_of
@@ -21,7 +21,7 @@ def test_undamped_mode_that_repeats_itself_is_named():
     omega = math.sqrt(PAPER.modes.omega_squared[0])
     with pytest.raises(ResonanceError):
         EventEquations(family.replace(omega=omega).linear, 1, 2, (1,))
-    assert np.isfinite(EventEquations(family.linear, 1, 2, (1,)).closing).all()
+    assert np.isfinite(EventEquations(family.linear, 1, 2, (1,)).planes["closing"]).all()
 
 
 def test_rates_too_far_apart_are_named():

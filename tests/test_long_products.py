@@ -6,7 +6,7 @@ from mpmath import mp, mpf
 from support import slow_cases
 from support.oscillators import PAPER
 
-from vibro_sweep.analysis.periodic.motion_between import multipliers_of
+from vibro_sweep.analysis.periodic.orbit_multipliers import multipliers_of
 from vibro_sweep.engine.impulses.flow import flow
 
 P = 5.0

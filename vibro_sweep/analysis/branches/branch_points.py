@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vibro_sweep.analysis.continuation.recorded import Rows
-from vibro_sweep.analysis.periodic.motion_between import multipliers_of
+from vibro_sweep.analysis.periodic.orbit_multipliers import multipliers_of
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses.flow import flow
 from vibro_sweep.model.linear import Linear, forcing_period

@@ -9,10 +9,9 @@ from vibro_sweep.analysis.branches import branch_text
 from vibro_sweep.analysis.continuation.chatter import Chatter
 from vibro_sweep.analysis.periodic.contact_numbers import is_smooth, one_plus_R
 from vibro_sweep.analysis.periodic.linearised import Linearised
+from vibro_sweep.analysis.periodic.orbit_motion import OrbitMotion
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.engine.impulses import flights
-from vibro_sweep.engine.impulses.flow import flow
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -84,7 +83,6 @@ class Graze:
         return "persistence" if self.distance_slope * self.speed_slope < 0 else "nonsmooth fold"
 
 
-ASIDE = 1e-3  # of 1/omega beside a graze in which its own turning point lies
 AT_ONCE = 1e-11  # the same, of impacts that vanish with another one, for all that rounding does
 
 
@@ -124,28 +122,9 @@ def inserted(solution: Solution, slow=()) -> tuple[Solution, int]:
 
     slow : indices of impacts without speed, whose own turning points are left out
     """
-    K, period = solution.K, solution.P
-    _, time, side = _nearest_aside(solution, slow) if len(slow) else solution.nearest
+    _, time, side = OrbitMotion(solution, slow).certificate()[0] if len(slow) else solution.nearest
     index = int(np.searchsorted(solution.times, time))
-    if K == 0 and time >= period:  # found where the period begins again, with the mirror for sigma = -1
-        time, side = time - period, solution.sigma * side
-    return solution.with_touch(index, time, side), index
-
-
-def _nearest_aside(solution: Solution, slow) -> tuple[float, float, int]:
-    """`Solution.nearest` of an orbit without rests, but for the turning points within `ASIDE` of the impacts `slow`."""
-    q, K = solution.family.linear, solution.K
-    f, nearest = flow(q), np.array([np.inf, 0.0, 0.0])
-    starts, begins = solution.states.copy(), solution.times
-    starts[:, len(q.normal)] += solution.jumps
-    ends = np.append(begins[1:], begins[0] + solution.P)
-    aside = np.isin(np.arange(K), slow) * ASIDE / q.omega
-    first, last = begins + aside, ends - np.roll(aside, -1)
-    flying, workspace = np.empty_like(starts), flights.new_workspace(starts.shape[1])
-    flights.sample_flights(f, starts, begins, np.arange(K), first, flying, workspace)
-    for state, begin, length in zip(flying, first, last - first, strict=True):
-        flights.fly_once(f, state, begin, length, q.low, q.high, nearest, workspace)
-    return float(nearest[0]), float(nearest[1]), int(nearest[2])
+    return solution.with_touch(index, float(time), int(side)), index
 
 
 def bare(solution: Solution, gone) -> Solution:

@@ -10,7 +10,7 @@ from vibro_sweep.analysis.branches import branch_points
 from vibro_sweep.analysis.branches.special import bare
 from vibro_sweep.analysis.continuation.recorded import Rows
 from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve
-from vibro_sweep.analysis.periodic.motion_between import multipliers_of
+from vibro_sweep.analysis.periodic.orbit_multipliers import multipliers_of
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.engine.continuation.curve_tests import TOUCHING
 from vibro_sweep.engine.continuation.problem import FLIP, FOLD, GRAZE, STICK, TORUS

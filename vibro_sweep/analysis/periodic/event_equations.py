@@ -3,14 +3,14 @@
 Phases are in radians of the force and lengths as they are, so that omega is 1 there.
 """
 
-from functools import cached_property
+from functools import cache
 
 import numpy as np
 
 from vibro_sweep.analysis.periodic.contact_numbers import Units, numbers_of, which_press
 from vibro_sweep.analysis.periodic.steady_gap import push_of_free_mode, steady_gap
-from vibro_sweep.engine.continuation import guesses, moving_flow, path, stepper
-from vibro_sweep.engine.continuation.moving_flow import HIGH, LOW
+from vibro_sweep.engine.continuation import moving_flow, path, stepper
+from vibro_sweep.engine.continuation.moving_flow import HIGH, LOW, NUMBERS
 from vibro_sweep.engine.continuation.problem import ORBIT, Problem
 from vibro_sweep.engine.continuation.workspace import new_place, new_workspace
 from vibro_sweep.engine.impulses.extremes import middle_weights
@@ -30,11 +30,12 @@ class EventEquations:
     def __init__(self, q: Linear, sigma: int, half_periods: int, sides, rests=()):
         """rests : indices of impacts after which the mass rests"""
         self.q, self.K, self.n = q, len(sides), 2 * len(q.normal)
-        planes, self.closing = _tables(q, sigma, half_periods, bool(rests), q.compliant)
+        planes = _tables(q, sigma, half_periods, bool(rests), q.compliant)
         self.planes = planes.copy()  # kernels write the contact's numbers into it
         self.planes[0]["numbers"], self.planes[0]["by_force"] = _contact_of(q), q.by_force
         self.planes[0]["exact"][self.n * (self.n + 2) :] = numbers_of(q, Units(1.0, q.omega))
-        resting, compliant = np.isin(np.arange(self.K), rests), which_press(q)
+        resting, compliant = np.zeros(self.K, bool), which_press(q)
+        resting[list(rests)] = True
         self.problem = Problem(
             ORBIT, 0, np.array(sides, float), resting, float(sigma), 0, np.ones(2), False, False, compliant
         )
@@ -44,10 +45,6 @@ class EventEquations:
     def of(cls, solution) -> "EventEquations":
         """The equations of a `Solution`."""
         return cls(solution.family.linear, solution.sigma, solution.half_periods, solution.sides, solution.rests)
-
-    @cached_property
-    def _path(self) -> path.Path:
-        return path.new_path(1, self.K, self.n, 1.0, 1.0, 1.0, np.zeros((2, 2)))
 
     def take_solution(self, solution) -> None:
         """The events of a `Solution`, without the states before them."""
@@ -60,10 +57,10 @@ class EventEquations:
         self.planes["is_known"] = 0
         self.run_task(stepper.MOVE)
 
-    def run_task(self, task: int) -> float:
+    def run_task(self, task: int, row: np.ndarray | None = None) -> float:
         """A task of engine/continuation/stepper.py."""
-        row = np.zeros(2 * self.K + 3)
-        return stepper.at(task, self.planes, self.problem, self._path, self.place, row, self.workspace)
+        row = np.zeros(2 * self.K + 3) if row is None else row
+        return stepper.at(task, self.planes, self.problem, _no_path(), self.place, row, self.workspace)
 
     def multipliers(self) -> np.ndarray:
         """(n,) of the equations that were assembled last, by falling modulus; at a graze one may be infinite."""
@@ -78,21 +75,35 @@ class EventEquations:
             values = np.divide(over, under, out=np.full(n, np.inf, complex), where=under != 0)
         return values[np.lexsort((-values.imag, -np.abs(values)))]
 
-    def newton(self, starts, oscillators=()) -> tuple[np.ndarray, np.ndarray]:
-        """Newton's method from guesses (m, 2K) of times and jumps, without rests: solutions, and the last change, NaN:
-        none found. oscillators : of each guess, where their contacts differ."""
-        q, K = self.q, self.K
+    def newton(self, starts, oscillators=()) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Newton's method from guesses (m, 2K) of times and jumps, without rests: solutions; the last change, NaN: none
+        found; and the states (m, K, 2N + 3) before the impacts. oscillators : of each guess, where contacts differ."""
+        q, K, n = self.q, self.K, self.n
         if not K:
-            return starts, np.zeros(len(starts))
-        contacts = np.array([_contact_of(one) for one in oscillators or [q] * len(starts)])
-        phases = q.omega * starts[:, :K] + q.tau
-        steady = (self.planes[0]["Z"][0] * np.exp(1j * phases[:, 0])).real
-        gap = contacts[:, HIGH if self.problem.sides[0] > 0 else LOW] - steady
-        guess = np.column_stack([phases, starts[:, K:] / q.omega, gap])
-        ends, changes = np.empty_like(guess), np.empty(len(guess))
-        room = self.place, self.closing, self.workspace
-        guesses.converge_all(self.planes, self.problem, *room, contacts, guess, ends, changes)
-        return np.hstack([(ends[:, :K] - q.tau) / q.omega, ends[:, K : 2 * K] * q.omega]), changes
+            return starts, np.zeros(len(starts)), np.empty((len(starts), 0, n + 3))
+        contacts = np.array([_contact_of(one) for one in oscillators or [q]])
+        guesses = np.zeros((len(starts), K * (n + 2) + 1 + NUMBERS))
+        x, guesses[:, -NUMBERS:] = guesses[:, : K * (n + 2)].reshape(len(starts), K, n + 2), contacts
+        x[..., n], x[..., n + 1] = q.omega * starts[:, :K] + q.tau, starts[:, K:] / q.omega
+        x[:, 0, 0] = contacts[:, HIGH if self.problem.sides[0] > 0 else LOW] - self.steady(x[:, 0, n])[:, 0]
+        self.run_task(stepper.CONVERGE, guesses.reshape(-1))
+        u = np.hstack([(x[..., n] - q.tau) / q.omega, x[..., n + 1] * q.omega])
+        return u, guesses[:, K * (n + 2)], self.whole(x[..., :n], x[..., n])
+
+    def steady(self, phases: np.ndarray) -> np.ndarray:
+        """(.., 2N) the steady motion at these phases."""
+        return (self.planes[0]["Z"] * np.exp(1j * phases[..., None])).real
+
+    def whole(self, free: np.ndarray, phases: np.ndarray) -> np.ndarray:
+        """(.., 2N + 3) states in contact coordinates, cos and sin of the phases, 1; free: without the steady motion."""
+        state = (free + self.steady(phases)) * np.repeat([1.0, self.q.omega], self.n // 2)
+        return np.concatenate([state, np.stack([np.cos(phases), np.sin(phases), np.ones(phases.shape)], -1)], -1)
+
+
+@cache
+def _no_path() -> path.Path:
+    """Of an orbit alone, which follows none."""
+    return path.new_path(1, 1, 2, 1.0, 1.0, 1.0, np.zeros((2, 2)))
 
 
 def _contact_of(q: Linear) -> list[float]:
@@ -101,10 +112,8 @@ def _contact_of(q: Linear) -> list[float]:
 
 
 @remembered(*MOTION)
-def _tables(
-    q: Linear, sigma: int, half_periods: int, rests: bool, compliant: bool
-) -> tuple[np.ndarray, np.ndarray | None]:
-    """(1,) `plane_of` of an oscillator, without its contact; `closing` in its units, without rests."""
+def _tables(q: Linear, sigma: int, half_periods: int, rests: bool, compliant: bool) -> np.ndarray:
+    """(1,) `plane_of` of an oscillator, without its contact; `closing` without rests."""
     checked_cells(q, half_periods)
     steady_gap(q)  # where it does not exist there is no such orbit; nor where this does not, but rests hold the gap
     if not rests:
@@ -128,8 +137,9 @@ def _tables(
     r["exact"][n * (n + 1) : n * (n + 2)] = f.B[n // 2 : n, n : n + 2].T.ravel() / q.omega**2
     r["middle_weights"], r["rest_weights"] = middle_weights(float(r["width"]))
     if rests:
-        return result, None
+        return result
     if sigma == 1:
         r["unseen"] = unseen_modes(q) / np.outer(units, units)
         r["has_unseen"] = bool(np.any(r["unseen"]))
-    return result, closing(q, sigma, half_periods) * np.append(units, 1.0) / units[:, None]
+    r["closing"] = closing(q, sigma, half_periods) * np.append(units, 1.0) / units[:, None]
+    return result

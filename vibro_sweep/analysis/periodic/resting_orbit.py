@@ -7,9 +7,8 @@ follow from them, since the motion repeats itself. Where the mass rests two mult
 
 import numpy as np
 
-from vibro_sweep.analysis.periodic.event_equations import EventEquations
+from vibro_sweep.analysis.periodic.orbit_motion import OrbitMotion
 from vibro_sweep.engine.continuation import stepper
-from vibro_sweep.engine.continuation.workspace import TEST
 
 MOST_STEPS = 30
 ROUNDED = 8 * np.finfo(float).eps  # of phases
@@ -17,21 +16,11 @@ CLOSINGS = 3  # to know from the state which contacts end by force
 LONGEST = 0.02  # step of Newton's method, in parts of the period and of the fastest jump
 
 
-class RestingOrbit:
+class RestingOrbit(OrbitMotion):
     """The motion of a `Solution` with rests. Raises LinAlgError where none repeats itself."""
 
-    def __init__(self, solution):
-        e = self.equations = EventEquations.of(solution)
-        self.q, self.sigma, self.length, self.n = e.q, solution.sigma, np.pi * solution.half_periods, e.n
-        self.rests, self.place, self.events, self.Z = (
-            list(solution.rests),
-            e.place,
-            e.workspace.events,
-            e.planes[0]["Z"],
-        )
-        self.pressed = solution.contacts
-        e.move()
-        e.take_solution(solution)
+    def _follow_events(self, _) -> None:
+        self.equations.move()
         self._close()
         self._sharpen()
 
@@ -101,26 +90,6 @@ class RestingOrbit:
         jumps = np.where(self.equations.problem.rests, -self.events["motion"][:, 0], self.place.jumps)
         return np.concatenate([times, jumps * self.q.omega, ends[self.rests]])
 
-    def _whole(self, free: np.ndarray, phases: np.ndarray) -> np.ndarray:
-        """(K, 2N + 3) states in contact coordinates, cos and sin of the phases, 1; free: without the steady motion."""
-        turn = np.exp(1j * phases[:, None])
-        state = (free + (self.Z * turn).real) * np.repeat([1.0, self.q.omega], self.n // 2)
-        return np.hstack([state, turn.real, turn.imag, np.ones(turn.shape)])
-
-    @property
-    def states(self) -> np.ndarray:
-        """(K, 2N + 3) before the impacts."""
-        return self._whole(self.place.x[:, : self.n], self.place.phases)
-
-    def certificate(self) -> tuple[np.ndarray, float, float]:
-        """(distance, t, side) of the turning point nearest to its stop, inf where there is none; the least free
-        acceleration into the stop, where a rest begins, or where it turns within; and `time_to_spare` of its stops."""
-        self.equations.run_task(stepper.EXAMINE)
-        distance, phase, side = self.equations.workspace.work[0]["nearest"]
-        time = (phase - self.q.tau) / self.q.omega if distance < np.inf else 0.0
-        hold = (self.events["hold"] * np.where(self.pressed, 1.0, self.q.omega**2))[self.rests].min()
-        return np.array([distance, time, side]), float(hold), float(self.place.tests[TEST.relaxed])
-
     def multipliers(self) -> np.ndarray:
         """(2N,) of the map over P, with the mirror for sigma = -1."""
         values = self.equations.multipliers()
@@ -132,7 +101,7 @@ class RestingOrbit:
         """Begins of flights and of events that last in order, the states there (.., 2N + 3), and of the latter the
         side; 0 of flights."""
         N, rests, ends = self.n // 2, self.equations.problem.rests, self._ends
-        struck, after = self.states, self._whole(self.events["after"][:, : self.n], ends)
+        struck, after = self.states, self.equations.whole(self.events["after"][:, : self.n], ends)
         on, stops = self.equations.problem.sides, self.q.stop(self.equations.problem.sides)
         struck[rests, 0], after[rests, 0] = stops[rests], (stops + on * self.events["depth"])[rests]
         for states in (struck, after):

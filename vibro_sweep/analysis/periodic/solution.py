@@ -12,7 +12,8 @@ from vibro_sweep.analysis.periodic.event_equations import EventEquations
 from vibro_sweep.analysis.periodic.itinerary import is_mirrored, repetitions
 from vibro_sweep.analysis.periodic.joined_contacts import ROUNDING, without_flights
 from vibro_sweep.analysis.periodic.linearised import Linearised
-from vibro_sweep.analysis.periodic.motion_between import contacts_of, fly, multipliers_of
+from vibro_sweep.analysis.periodic.orbit_motion import OrbitMotion
+from vibro_sweep.analysis.periodic.orbit_multipliers import contacts_of, multipliers_of
 from vibro_sweep.analysis.periodic.resting_orbit import RestingOrbit
 from vibro_sweep.analysis.periodic.steady_gap import steady_gap
 from vibro_sweep.engine.impulses.flow import flow
@@ -46,6 +47,10 @@ class Solution:
     def resting(self) -> RestingOrbit:
         """The motion of an orbit with rests."""
         return RestingOrbit(self)
+
+    @cached_property
+    def _motion(self) -> OrbitMotion:
+        return self.resting if self.rests else OrbitMotion(self)
 
     @property
     def K(self) -> int:
@@ -94,12 +99,12 @@ class Solution:
     @cached_property
     def hold(self) -> float:
         """The least free acceleration into the stop during the rests; inf without a rest."""
-        return self._flights[2] if self.rests else np.inf
+        return self._certificate[1]
 
     @cached_property
     def relaxes(self) -> bool:
         """Whether each stop that a contact left by force is at rest again at its next touch."""
-        return not self.rests or self._flights[3] > 0
+        return self._certificate[2] > 0
 
     @cached_property
     def motion(self) -> np.ndarray:
@@ -126,20 +131,18 @@ class Solution:
         ]
 
     @cached_property
-    def _flights(self):
-        if self.rests:
-            return self.resting.states, *self._regular.resting.certificate()
-        return fly(self.family.linear, self.sigma, self.half_periods, self.sides, self.u)
+    def _certificate(self) -> tuple[np.ndarray, float, float]:
+        return (self._regular if self.rests else self)._motion.certificate()
 
-    @property
+    @cached_property
     def states(self) -> np.ndarray:
         """The states before each impact, in contact coordinates."""
-        return self._flights[0]
+        return self._motion.states
 
     @property
     def nearest(self) -> tuple[float, float, int]:
         """Distance, time and side of the turning point nearest to its stop."""
-        distance, time, side = self._flights[1]
+        distance, time, side = self._certificate[0]
         return float(distance), float(time), int(side)
 
     @property
@@ -192,8 +195,8 @@ class Solution:
     def size_of_gap(self) -> float:
         """A scale of the gap: of the stops that are hit, the steady motion, and what impulses do in 1/omega."""
         q = self.family.linear
-        moved = float(np.abs(self.jumps).max(initial=0.0)) / q.omega
-        return max(float(np.abs(self.states[:, 0]).max()), abs(steady_gap(q).swing), moved)
+        stops, moved = np.abs(q.stop(np.array(self.sides, int))), np.abs(self.jumps) / q.omega
+        return max(float(stops.max(initial=0.0)), abs(steady_gap(q).swing), float(moved.max(initial=0.0)))
 
     @cached_property
     def units(self) -> np.ndarray:
@@ -285,6 +288,8 @@ def corrected(solutions: list[Solution]) -> list[Solution | None]:
             continue
         guesses, oscillators = np.array([one.u for one in some]), [one.family.linear for one in some]
         found = EventEquations.of(some[0]).newton(guesses, oscillators)
-        for one, u, change in zip(some, *found, strict=True):
+        for one, u, change, states in zip(some, *found, strict=True):
             result.append(replace(one, u=u, change=float(change)) if np.isfinite(change) else None)
+            if result[-1] is not None:
+                result[-1].__dict__["states"] = states  # known from there
     return result

@@ -67,6 +67,12 @@ def shift(f, table, y, other):
 
 
 @jit
+def is_touch(c, i):
+    """Whether event i is a turning point of the gap: it grazes, or takes part in nothing."""
+    return c.sides[i] == 0.0 or (c.kind >= GRAZE and i == c.index)
+
+
+@jit
 def look(f, c, place, b):
     """Lower `work.nearest` to the nearest turning point."""
     K, n, omega, work = len(place.x), f.A.shape[0], f.numbers[OMEGA], b.work[0]
@@ -76,13 +82,12 @@ def look(f, c, place, b):
         begin, length = place.x[i, n], b.events[i].length
         for r in range(n):
             y[r] = b.events[i].after[r]
-        if c.kind >= GRAZE:
-            if i == c.index:
-                polynomial(n, f.series, aside, work.other[0])
-                shift(f, work.other[0], y, other)
-                begin, length = begin + omega * aside, length - aside
-            if (i + 1) % K == c.index:
-                length -= b.tail[0].numbers[NEXT] if c.kind == STICK else aside
+        if is_touch(c, i):
+            polynomial(n, f.series, aside, work.other[0])
+            shift(f, work.other[0], y, other)
+            begin, length = begin + omega * aside, length - aside
+        if is_touch(c, (i + 1) % K):
+            length -= b.tail[0].numbers[NEXT] if c.kind == STICK else aside
         if c.rests[i]:
             b.events[i].hold = hold_of(f, c.compliant, c.sides[i], place.x[i], b.events[i], work)
             begin += place.x[i, n + 1]

@@ -3,7 +3,7 @@
 For given phases and jumps the states before the impacts follow linearly: with r what jumps and constant force add to
 the state 0 over a period,
 
-    y_1 = (sigma - E(P))^-1 r
+    y_1 = (sigma - E(P))^-1 r = closing (r, gap)
 
 so that each step begins with states that fly to one another, as if phases and jumps were the only unknowns. What a free
 mode leaves open of y_1 is the gap there, which moves with Newton's steps.
@@ -22,7 +22,7 @@ from vibro_sweep.engine.continuation.flight_tables import flight
 from vibro_sweep.engine.continuation.moving_flow import HIGH, LOW, NUMBERS, OMEGA, ONE_PLUS_R_HIGH, ONE_PLUS_R_LOW
 from vibro_sweep.engine.continuation.reflections import put_last, take_apart
 from vibro_sweep.engine.continuation.residual import approach, eliminate, grown, is_short, land, leave
-from vibro_sweep.engine.simd.jit import exported, jit
+from vibro_sweep.engine.simd.jit import jit
 
 MOST_STEPS = 30
 LAST = 5  # of them
@@ -40,11 +40,8 @@ def length_after(f, place, i):
 
 
 @jit
-def close(f, c, place, closing, b):
-    """The motion through all events, with the states that follow from phases and jumps.
-
-    closing : (n, n + 1) from what a period adds to the state 0, and the gap, to y_1
-    """
+def close(f, c, place, b):
+    """The motion through all events, with the states that follow from phases, jumps and the gap at the first one."""
     K, n, N, work = len(place.x), f.A.shape[0], f.A.shape[0] // 2, b.work[0]
     y, end, gap = work.flying[0], work.flying[1], place.x[0, 0]
     for r in range(n):
@@ -61,9 +58,9 @@ def close(f, c, place, closing, b):
         for r in range(n):
             y[r] = end[r]
     for r in range(n):
-        place.x[0, r] = closing[r, n] * gap
+        place.x[0, r] = f.closing[r, n] * gap
         for j in range(n):
-            place.x[0, r] += closing[r, j] * y[j]
+            place.x[0, r] += f.closing[r, j] * y[j]
     for i in range(K):
         e, x, last = b.events[i], place.x[i], i + 1 == K
         approach(f, x, e)
@@ -100,7 +97,7 @@ def solve(f, c, place, b):
 
 
 @jit
-def converge(f, c, place, closing, b):
+def converge(f, c, place, b):
     """Newton's method from phases, jumps and the gap at the first impact. Relative size of the last step; NaN: none.
 
     Steps longer than a quarter of the least distance between impacts are shortened. It has converged where steps grow
@@ -109,7 +106,7 @@ def converge(f, c, place, closing, b):
     where the last steps of all are small and shrink no more, the largest of them says how much.
     """
     K, n, omega, earlier, last, before = len(place.x), f.A.shape[0], f.numbers[OMEGA], 0.0, 0.0, np.inf
-    swing, period = abs(f.Z[0]), math.pi * f.half_turns
+    swing, period = math.hypot(f.Z[0].real, f.Z[0].imag), math.pi * f.half_turns
     size = swing
     for i in range(K):
         size = max(size, abs(f.numbers[HIGH if c.sides[i] > 0 else LOW]))
@@ -121,7 +118,7 @@ def converge(f, c, place, closing, b):
                 return max(earlier, last)
             if not last < THROWN:
                 return np.nan
-        close(f, c, place, closing, b)
+        close(f, c, place, b)
         if not solve(f, c, place, b):
             return np.nan
         left, longest, reach, speed, kick = 0.0, 0.0, np.inf, omega * swing, 0.0
@@ -157,21 +154,23 @@ def converge(f, c, place, closing, b):
     return np.nan
 
 
-@exported
-def converge_all(planes, c, place, closing, b, contacts, starts, ends, changes):
+@jit
+def converge_all(f, c, place, guesses, b):
     """`converge` from many guesses, of oscillators that differ in their contact alone.
 
-    contacts : (m, NUMBERS); starts, ends : (m, 2 K + 1): phases, jumps, the gap at the first impact less the steady
-    motion; changes : (m,)
+    guesses : one after the other, each `place.x`, of which a guess has phases, jumps and the gap at the first impact
+    less the steady motion, and all become those of the orbit; the last change; `numbers`
     """
-    f, K, n = planes[0], len(place.x), planes[0].A.shape[0]
-    for m in range(len(starts)):
+    K, width = place.x.shape
+    size = K * width
+    each = guesses.reshape((-1, size + 1 + NUMBERS))
+    for m in range(len(each)):
         for i in range(NUMBERS):
-            f.numbers[i] = contacts[m, i]
-        for i in range(K):
-            place.x[i, n], place.x[i, n + 1] = starts[m, i], starts[m, K + i]
-        place.x[0, 0] = starts[m, 2 * K]
-        changes[m] = converge(f, c, place, closing, b)
-        for i in range(K):
-            ends[m, i], ends[m, K + i] = place.x[i, n], place.x[i, n + 1]
-        ends[m, 2 * K] = place.x[0, 0]
+            f.numbers[i] = each[m, size + 1 + i]
+        for k in range(size):
+            place.x[k // width, k % width] = each[m, k]
+        each[m, size] = converge(f, c, place, b)
+        if each[m, size] < np.inf:
+            close(f, c, place, b)
+        for k in range(size):
+            each[m, k] = place.x[k // width, k % width]

@@ -177,7 +177,7 @@ def sign_of_events(c, place):
     for i in range(len(place.x)):
         if not (place.x[i, -1] if c.rests[i] else -c.sides[i] * place.x[i, -1]) > 0.0:
             sign, negative = -sign, negative + 1
-    return 0.0 if negative > 1 and c.compliant is not None else sign
+    return 0.0 if negative > 1 and (is_contact(c.compliant, -1.0) or is_contact(c.compliant, 1.0)) else sign
 
 
 @jit

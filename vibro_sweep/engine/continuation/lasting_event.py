@@ -69,6 +69,8 @@ def put_end(f, work):
 @jit
 def last(f, compliant, side, x, e, work):
     """`after`, `carry`, `pull`, `release` and `depth` of an event that lasts, after `approach`."""
+    if compliant is None:
+        return
     n, omega, stop = f.A.shape[0], f.numbers[OMEGA], HIGH if side > 0 else LOW
     N, s, E, B, end = n // 2, x[n + 1], work.lasting, work.generator, work.end
     turn = e.turn * cmath.exp(1j * s)
@@ -146,6 +148,8 @@ def put_release(f, by_length, e, work):
 def hold_of(f, compliant, side, x, e, work):
     """What keeps the event up: the least force into the stop where it turns, of a rest also where it begins; the least
     depth of a contact where it turns back into the stop, and its force only with a release by force."""
+    if compliant is None:
+        return np.inf
     n, Z = f.A.shape[0], work.start[0]
     halvings = halvings_of(f, compliant, side, x[n + 1])
     if halvings < 0:
@@ -181,6 +185,8 @@ def lower(factor, length, work):
 @jit
 def state_within(f, compliant, side, x, delay, e, work, state):
     """The whole motion (n,) so long after the event has begun."""
+    if compliant is None:
+        return
     begin(f, compliant, side, x, e, work)
     put_map(f, compliant, side, delay, work)
     for r in range(f.A.shape[0]):

@@ -49,6 +49,7 @@ def plane_of(masses: int, compliant: bool = False) -> np.dtype:
         ("half_turns", float),  # of the force in a period
         ("by_force", np.int64),  # 1 where contacts with damped stops end when the force is 0
         ("has_unseen", np.int64),  # 1 where there are free modes that the contact does not see
+        ("closing", float, (n, n + 1)),  # of an orbit alone without rests, see guesses.py
         ("unseen", float, (n, n)),  # of these the momenta times the places, which the closure keeps by this
         ("fit", float, (DEGREE + 1, DEGREE + 1, count)),  # coefficients of the powers of (p - centre)/reach
         ("exact", float, (count,)),  # what `values` are at a point, of the oscillator itself

@@ -10,11 +10,20 @@ import math
 
 import numpy as np
 
+from vibro_sweep.engine.continuation.certificate import certify
 from vibro_sweep.engine.continuation.corrector import assemble, in_order, move, newton_step, put_plane
 from vibro_sweep.engine.continuation.curve_tests import overflows
+from vibro_sweep.engine.continuation.guesses import close, converge_all
 from vibro_sweep.engine.continuation.lasting import contacts_begin, forced
 from vibro_sweep.engine.continuation.looking_at import examine, goes_over, happens, refresh, touches
-from vibro_sweep.engine.continuation.moving_flow import OMEGA, move_exactly, move_to, take_shift
+from vibro_sweep.engine.continuation.moving_flow import (
+    OMEGA,
+    build_middle,
+    build_swing,
+    move_exactly,
+    move_to,
+    take_shift,
+)
 from vibro_sweep.engine.continuation.path import (
     bulges,
     comes_back,
@@ -183,6 +192,7 @@ def take_states(f, c, path, b):
 
 # what `at` is to do
 MOVE, ASSEMBLE, CORRECT, EXAMINE, NEAR, SOLVE, STEPS, STATES, FOLLOW, TAKE_APART, TAKE_UP = range(11)
+CLOSE, CONVERGE, CERTIFY = range(11, 14)  # of an orbit alone
 
 
 @exported
@@ -196,6 +206,8 @@ def at(task, planes, c, path, place, row, b):
     of the recorded points, at `record.phase`. FOLLOW: states before all events
     from that before the first. TAKE_APART: the change of all events, `events.changes[1]`, for xi_1 and parameters in
     `work.null`. TAKE_UP: the left vector, in `trial`, for those of the last and of the eliminated equations.
+    CLOSE: the motion through all events, without rests; CONVERGE: Newton's method from many guesses, in `row`; CERTIFY:
+    the certificate of the motion through all events.
     """
     f = planes[0]
     take_shift(f, place.p[FIRST], place.p[SECOND], task == SOLVE)
@@ -206,6 +218,16 @@ def at(task, planes, c, path, place, row, b):
     if task == CORRECT:
         change = newton_step(f, c, place, row, b)
         return change if in_order(f, c, place) else np.nan
+    if task == CLOSE:
+        close(f, c, place, b)
+        return 1.0
+    if task == CONVERGE:
+        converge_all(f, c, place, row, b)
+        return 1.0
+    if task == CERTIFY:
+        build_middle(f)
+        build_swing(f)
+        return certify(f, c, place, b)
     if task == STEPS:
         return float(take_steps(f, c, path, place, row, b))
     if task == STATES:

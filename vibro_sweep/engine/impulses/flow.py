@@ -12,7 +12,6 @@ from typing import NamedTuple
 import numpy as np
 
 from vibro_sweep.engine.impulses.extended import extended, identity
-from vibro_sweep.engine.impulses.extremes import middle_weights
 from vibro_sweep.engine.impulses.free_modes import (
     MOST_CELLS,
     ResonanceError,
@@ -76,9 +75,6 @@ class Flow(NamedTuple):
     width: float  # of a cell
     powers: np.ndarray  # (DOUBLINGS, m, m): exp(B width 2^j)
     series: np.ndarray  # (ORDER + 1, m^2): B^k/k!
-    rows: np.ndarray  # (ORDER + 1, m): the gap's Taylor coefficients
-    middle: np.ndarray  # (m, MIDDLE): rows^T . middle_weights (extremes.py)
-    rest: np.ndarray  # (m,): |rows|^T . its rest_weights
     omega: float
     tau: float
     spread: float  # between the fastest and the slowest decay, per unit time
@@ -116,18 +112,15 @@ def free_rates(q: Linear) -> np.ndarray:
 @remembered(*MOTION, most=16)
 def flow(q: Linear) -> Flow:
     """Tables of the free flight. Raises TooStiffError."""
-    B = rates(q)
-    return _flow(q, B, np.eye(len(B))[0])
+    return _flow(q, rates(q))
 
 
 @remembered(*MOTION, most=16)
 def constrained_flow(q: Linear) -> Flow:
-    """Tables of the motion while the gap stays as it is; rows: of what the gap's free acceleration is then."""
+    """Tables of the motion while the gap stays as it is."""
     B = rates(q)
-    N = len(q.normal)
-    constrained = B.copy()
-    constrained[0], constrained[N] = 0.0, 0.0
-    return _flow(q, constrained, B[N])
+    B[0], B[len(q.normal)] = 0.0, 0.0
+    return _flow(q, B)
 
 
 def contact_flow(q: Linear, side: int) -> Flow:
@@ -139,10 +132,10 @@ def contact_flow(q: Linear, side: int) -> Flow:
     B[N, 0] -= k * push
     B[N, N] -= c * push
     B[N, -1] -= (side * p - k * stop) * push
-    return _flow(q, B, np.eye(len(B))[0], math.sqrt(k * push) + c * push)
+    return _flow(q, B, math.sqrt(k * push) + c * push)
 
 
-def _flow(q: Linear, B: np.ndarray, row: np.ndarray, rate: float = 0.0) -> Flow:
+def _flow(q: Linear, B: np.ndarray, rate: float = 0.0) -> Flow:
     """rate : beside those of the free flight, which cells are to resolve"""
     n = len(B) - 3
     cells = 2 * cells_needed(q)
@@ -157,17 +150,12 @@ def _flow(q: Linear, B: np.ndarray, row: np.ndarray, rate: float = 0.0) -> Flow:
             powers.append(step.astype(float))
             step = step @ step
     series = taylor_rows(extended(B), identity(len(B)))
-    rows = np.stack([extended(row) @ term for term in series]).astype(float)
-    middle, rest = middle_weights(float(width))
     decays = np.linalg.eigvals(B[:n, :n]).real
     return Flow(
         B,
         float(width),
         np.array(powers),
         series.astype(float).reshape(ORDER + 1, -1),
-        rows,
-        rows.T @ middle,
-        np.abs(rows.T) @ rest,
         q.omega,
         float(q.tau),
         float(np.ptp(decays)),

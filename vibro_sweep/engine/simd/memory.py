@@ -23,10 +23,9 @@ def record(fields: list) -> np.dtype:
 
 def new_lines(shape: int | tuple[int, ...], dtype) -> np.ndarray:
     """Zeros that begin with a cache line."""
-    size = math.prod(np.atleast_1d(shape)) * np.dtype(dtype).itemsize
-    space = np.zeros(size + LINE, np.uint8)
-    first = -space.ctypes.data % LINE
-    return space[first : first + size].view(dtype).reshape(shape)
+    dtype = np.dtype(dtype)
+    space = np.zeros(math.prod(shape if isinstance(shape, tuple) else (shape,)) * dtype.itemsize + LINE, np.uint8)
+    return np.ndarray(shape, dtype, space, offset=-space.ctypes.data % LINE)
 
 
 def width_of_row(array):

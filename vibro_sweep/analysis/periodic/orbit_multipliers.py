@@ -1,23 +1,12 @@
-"""The motion of an orbit between its impacts, and its multipliers."""
+"""The multipliers of an orbit with impacts."""
 
 import numpy as np
 
 from vibro_sweep.engine.impulses import flights, graded_product
-from vibro_sweep.engine.impulses.flow import Flow, closing, flow
-from vibro_sweep.model.linear import Linear, forcing_period
+from vibro_sweep.engine.impulses.flow import Flow
+from vibro_sweep.model.linear import Linear
 
 UNORDERED = 1e-9  # of the period: by so much rounding may exchange impacts
-
-
-def fly(q: Linear, sigma: int, half_periods: int, sides, u) -> tuple[np.ndarray, np.ndarray]:
-    """States (max(K, 1), 2N + 3) before each impact, in contact coordinates; and (distance, t, side) of the turning
-    point of the gap nearest to its stop, inf where there is none."""
-    f, close = flow(q), closing(q, sigma, half_periods)
-    m, K = f.B.shape[0], len(sides)
-    states, nearest, workspace = np.empty((max(K, 1) + 1, m)), np.empty(3), flights.new_workspace(m)
-    P = forcing_period(q) / 2 * half_periods
-    flights.fly_orbit(f, close, contacts_of(q, sides), u, P, q.low, q.high, states, nearest, workspace)
-    return states[:-1], nearest
 
 
 def multipliers_of(f: Flow, sigma: int, P: float, contacts: np.ndarray, u, motion) -> np.ndarray:
