@@ -56,7 +56,12 @@ def put_step(f, compliant, side, step, work):
     if differ(work.generator, work.generators[k]):
         build_motion(f, work.generator, work.motion_series[k])
     for j in range(f.parameters, -1, -1):  # the last one leaves the derivative of m by s
-        put_polynomials(f, work.motion_series[k, j], step, work.lasting[j], work.mean[j], work.mean_slope)
+        work.varies[j] = is_not_zero(work.generator[j])
+        if work.varies[j]:
+            put_polynomials(f, work.motion_series[k, j], step, work.lasting[j], work.mean[j], work.mean_slope)
+        else:
+            clear(work.lasting[j])
+            clear(work.mean[j : j + 1])
     put_turn(f, step, work.lasting[0])
 
 
@@ -99,6 +104,21 @@ def differ(tables, kept):
         found |= bits(abs(value - eight(kept, place)) > 0.0)
         put_eight(kept, place, value)
     return found != 0
+
+
+@jit
+def is_not_zero(table):
+    """Whether a number of a table is not zero: along b and along numbers of the stop alone B does not change."""
+    found = 0
+    for place in range(0, table.shape[0] * table.shape[1], LANES):
+        found |= bits(abs(eight(table, place)) > 0.0)
+    return found != 0
+
+
+@jit
+def clear(table):
+    for place in range(0, table.shape[0] * table.shape[1], LANES):
+        put_eight(table, place, eight(table, place) * 0.0)
 
 
 @jit
@@ -160,6 +180,8 @@ def double(f, length, work):
     """Double E and m up to this length: E E and m (E + 1)/2."""
     n, E, mean, twice, wide = f.A.shape[0], work.lasting, work.mean, work.twice, work.lasting.shape[2]
     for j in range(f.parameters, -1, -1):
+        if not work.varies[j]:
+            continue
         for place in range(0, wide, LANES):
             value = eight(mean[j], place) + combined(E[0], mean[j], n + 4, place)
             if j > 0:
@@ -171,6 +193,8 @@ def double(f, length, work):
                     value = value + combined(E[j], E[0, r], n, place)
                 put_eight(twice[j], r * wide + place, value)
     for j in range(f.parameters + 1):
+        if not work.varies[j]:
+            continue
         for place in range(0, n * wide, LANES):
             put_eight(E[j], place, eight(twice[j], place))
         for place in range(0, wide, LANES):

@@ -144,6 +144,7 @@ def work_of(masses: int) -> np.dtype:
         ("lasting", float, (1 + PARAMETERS, n + 4, columns_of(n + 3))),
         ("twice", float, (1 + PARAMETERS, n + 1, columns_of(n + 3))),
         ("mean", float, (1 + PARAMETERS, columns_of(n + 3))),
+        ("varies", np.int64, (1 + PARAMETERS,)),  # whether these and `lasting` are not zero
         ("mean_slope", float, (columns_of(n + 3),)),
         ("force", float, (1 + PARAMETERS, columns_of(n + 3))),
         ("start", float, (1 + PARAMETERS, n + 4)),  # see lasting_event.py
