@@ -1,26 +1,15 @@
-"""Compliant stops against many digits, closed forms, exact identities, and the rigid ones that they come near to."""
+"""Compliant stops against many digits, closed forms, and the rigid ones that they come near to; sweeps of them."""
 
 import math
 
 import numpy as np
 import pytest
-from mpmath import mp, mpf
 from reference import compliant
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
+from support.soft_stops import ELASTIC, FIELDS, FREE, PAPER, one_mass
 
 import vibro_sweep as vs
-from vibro_sweep.scene import SceneError, parse_scene
-
-FREE = dict(k=0, zeta=0, F=0, omega=1, b=1, stops="right", tau=0.0)
-PAPER = dict(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63)
-ELASTIC = dict(k=1, zeta=0.01, F=0.5, omega=0.8, b=1, stops="right", tau=0.0)
-FIELDS = ("t_touch", "t_release", "v_touch", "v_release", "max_penetration", "max_force")
-
-
-def one_mass(**changes):
-    return vs.Oscillator.named("one_mass", **changes)
-
 
 # --- against a simulator in forty digits; random oscillators: test_compliant_contacts.py
 
@@ -142,60 +131,6 @@ def test_order_of_what_a_grazing_touch_of_two_masses_does(order, stop):
     assert fitted_order(order, change) == pytest.approx(order, abs=0.02)
 
 
-# --- exponents
-
-
-@pytest.mark.parametrize(
-    "stop", [dict(k_stop=29), dict(k_stop=29, c_stop=1.0), dict(k_stop=1e4, c_stop=14, preload=0.2), dict(k_stop=1e8)]
-)
-def test_multipliers_against_differences_in_forty_digits(stop):
-    """The monodromy matrix of a periodic orbit, by differences of orbits 1e-20 apart."""
-    system = one_mass(**{**ELASTIC, "zeta": 0.1, "tau": 1.0}, **stop)
-    data = vs.sweep(system, {"omega": [0.8]}, transient=2000, record=20, observe=["section", "multipliers"])
-    period = int(data.period[0])
-    assert period > 0
-    start, columns = [float(data.x1[0, -1]), float(data.v1[0, -1])], []
-    with mp.workdps(50):
-        end = compliant.simulate(system.linear, start, periods=period).section[period]
-        for j in range(2):
-            beside = [mpf(one) for one in start]
-            beside[j] += mpf(10) ** -20
-            moved = compliant.simulate(system.linear, beside, periods=period).section[period]
-            columns.append([float((a - b) * mpf(10) ** 20) for a, b in zip(moved, end, strict=True)])
-    exact = np.linalg.eigvals(np.array(columns).T)
-    found = data.multiplier_re.values[0] + 1j * data.multiplier_im.values[0]
-    for one in found:
-        assert np.abs(exact - one).min() < 1e-9 * np.abs(exact).max()
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("release", ["displacement", "force"])
-@pytest.mark.parametrize("b", [3.0, 5.0, 6.4])
-def test_sum_rule(release, b):
-    system = vs.System(**PAPER, b=b, k_stop=1e4, c_stop=14, k_stop_left=400, c_stop_left=3, release=release)
-    exponents = vs.lyapunov(system, (0, 0, 0, 0), 300, 600)
-    assert abs(exponents.residual) < 1e-12 and np.all(np.isfinite(exponents))
-
-
-def test_the_fastest_direction_is_not_lost_in_a_long_contact():
-    """Two rates far apart, k/c and c: within a cell of time the one vector shrinks by e^-100 beside the other."""
-    k, c = 5e3, 297.0
-    system = one_mass(**ELASTIC | {"zeta": 0.05, "F": 0.8, "omega": 0.7, "b": 0.3}, k_stop=k, c_stop=c)
-    exponents, orbit = vs.lyapunov(system, (0, 0), 30, 30), vs.simulate(system, (0, 0), 40)
-    held = (orbit.contacts["t_release"] - orbit.contacts["t_touch"])[-1]
-    assert exponents.sum() == pytest.approx(-0.1 - c * held / system.period, rel=1e-10)
-    assert abs(exponents.residual) < 1e-11 and exponents[1] < -c * 0.3
-
-
-@pytest.mark.slow
-def test_one_rigid_and_one_compliant_stop_have_a_sum_rule():
-    system = vs.System(**PAPER, b=3, R=0.8, k_stop_left=100, c_stop_left=2)
-    orbit = vs.simulate(system, (0, 0, 0, 0), 200)
-    assert np.all(orbit.impacts["side"] == 1) and np.all(orbit.contacts["side"] == -1)
-    assert len(orbit.impacts) > 50 and len(orbit.contacts) > 50
-    assert abs(vs.lyapunov(system, (0, 0, 0, 0), 300, 600).residual) < 1e-12
-
-
 # --- sweeps
 
 
@@ -272,19 +207,6 @@ def _leaves(t, y):
 _leaves.terminal, _leaves.direction = True, -1
 
 
-def test_exponents_do_not_depend_on_where_the_section_is():
-    """In contact or not: tau = pi/2 has its sections in contacts."""
-    numbers = dict(k=1, zeta=0.01, base=True, F=0.9 / 1.26, omega=1.1, k_stop=29, b=1, stops="right")
-    found = []
-    for tau in (math.pi / 2, 0.3):
-        system = vs.Oscillator.named("one_mass", **numbers, tau=tau)
-        data = vs.sweep(system, {"b": [1.0]}, transient=600, record=60, observe=["section", "lyapunov"])
-        assert data.status[0] == 0
-        found.append(data.lyapunov.values.ravel())
-    for exponents in found:
-        assert exponents == pytest.approx([-0.01, -0.01], abs=1e-12)
-
-
 @pytest.mark.slow
 def test_bits_do_not_depend_on_workers_or_on_other_points():
     system, axes = vs.System(**PAPER, b=4, k_stop=1e3, c_stop=2), {"b": np.linspace(3, 7, 40)}
@@ -333,89 +255,6 @@ def test_a_stop_that_loses_its_damper_along_a_chain_is_relaxed_at_once():
     assert there.section[1] == pytest.approx([float(data.x1[1, 0]), float(data.v1[1, 0])], abs=1e-14)
 
 
-# --- what is refused
-
-
-@pytest.mark.parametrize(
-    "numbers, key",
-    [
-        (dict(k_stop=-1), "k_stop"),
-        (dict(k_stop=0), "k_stop"),
-        (dict(k_stop=math.inf), "k_stop"),
-        (dict(k_stop="stiff"), "k_stop"),
-        (dict(k_stop=10, R=0.5), "k_stop"),
-        (dict(R=0.5, R_left=0.5, k_stop_left=3), "k_stop_left"),
-        (dict(k_stop=10, c_stop=-1), "c_stop"),
-        (dict(k_stop=10, preload=-1), "preload"),
-        (dict(R=0.5, preload=1), "preload"),
-        (dict(R=0.5, c_stop=1), "c_stop"),
-        (dict(R=0.5, preload_left=1), "preload_left"),
-        (dict(k_stop=10, R_left=0.5, c_stop_left=1), "c_stop_left"),
-        (dict(R=0.5, release="force"), "release"),
-        (dict(k_stop=10, release="speed"), "release"),
-        (dict(k_stop=10, release=None), "release"),
-        ({}, "R"),
-        (dict(preload=1), "R"),
-        (dict(c_stop=1, release="force"), "R"),
-    ],
-)
-def test_numbers_that_do_not_fit(numbers, key):
-    for make in (
-        lambda: vs.System(**PAPER, b=4, **numbers),
-        lambda: one_mass(**{**ELASTIC, "stops": "both"}, **numbers),
-    ):
-        with pytest.raises(vs.ParameterError) as caught:
-            make()
-        assert caught.value.key == key
-
-
-SOFT = (
-    "system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, b: 5, k_stop: 100}\n"
-    + "orbit: {transient: 1, record: 1}\n"
-)
-
-
-@pytest.mark.parametrize(
-    "more, key",
-    [
-        ("dynamics: map\n", "dynamics"),
-        ("section: {kind: impact, stop: right}\n", "section.stop"),
-        ("sweep: {R: {values: [0.5]}}\n", "k_stop"),
-        ("sweep: {k_stop: {values: [0, 1]}}\n", "sweep.k_stop"),
-    ],
-)
-def test_scenes_that_are_refused(more, key):
-    with pytest.raises(SceneError) as caught:
-        parse_scene(SOFT + more)
-    assert any(key in line for line in caught.value.problems)
-    with pytest.raises(SceneError, match="rigid"):
-        parse_scene(SOFT.replace("k_stop: 100", "R: 0.8") + "observe: [contacts]\n")
-
-
-@pytest.mark.parametrize(
-    "call",
-    [
-        lambda one: vs.born_at_grazing(one),
-        lambda one: vs.discontinuity_map(one),
-    ],
-)
-def test_what_belongs_to_rigid_stops_says_so(call):
-    with pytest.raises(ValueError, match=r"(of|with) rigid stops"):
-        call(vs.System(**PAPER, b=5, k_stop=100))
-
-
-def test_numbers_follow_those_of_the_right_stop():
-    system = vs.System(**PAPER, b=5, k_stop=100, c_stop=1)
-    assert system.linear.symmetric and system.parameters()["k_stop_left"] == 100
-    mixed = system.replace(R_left=0.5)
-    assert (mixed.linear.k_low, mixed.linear.R_low, mixed.linear.k_high) == (0, 0.5, 100)
-    assert "k_stop_left" not in mixed.parameters()
-    physical = vs.System.physical(
-        M1=2, M2=20, K1=800, K2=4000, C1=4, C2=20, P1=10, P2=0, Omega=12.6, B=0.05, k_stop=8e5, c_stop=40, preload=5
-    )
-    assert (physical.k_stop, physical.c_stop, physical.preload) == pytest.approx((1000, 1.0, 0.5))
-
-
 @pytest.mark.parametrize("release", ["displacement", "force"])
 def test_trajectories_and_samples_go_on_from_a_contact_or_a_relaxing_stop(release):
     system = one_mass(**ELASTIC | {"tau": 1.3}, k_stop=29, c_stop=6, release=release)
@@ -429,25 +268,3 @@ def test_trajectories_and_samples_go_on_from_a_contact_or_a_relaxing_stop(releas
     assert data.trajectory_x1.values[0] == pytest.approx(orbit.sample(np.linspace(40, 42, 41) * T)[:, 0], abs=1e-10)
     fine = vs.simulate(system, (0.3, 0), 10).sample(np.linspace(0, 10, 2001) * T)
     assert np.abs(np.diff(fine[:, 0])).max() < 1.1 * np.abs(fine[:, 1]).max() * T / 200
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("release, c_stop", [("force", 1.0), ("force", 4.0), ("displacement", 1.0)])
-def test_volumes_through_stops_that_relax(release, c_stop):
-    """The sum of the exponents over a period is the logarithm of the determinant of differences in eighty digits."""
-    soft = ELASTIC | {"k": 25, "omega": 1.5, "b": 0.02, "stops": "both"}
-    system = one_mass(**soft, constant=0.3, k_stop=4, c_stop=c_stop, preload=0.01, release=release)
-    start, step = [mpf("0.01"), mpf("1.5")], mpf(10) ** -30
-    how = dict(periods=1, digits=80)
-    with mp.workdps(80):
-        end = compliant.simulate(system.linear, start, **how)
-        columns = []
-        for j in range(2):
-            beside = [one + step * (i == j) for i, one in enumerate(start)]
-            moved = compliant.simulate(system.linear, beside, **how).section[1]
-            columns.append([(a - b) / step for a, b in zip(moved, end.section[1], strict=True)])
-        wanted = float(mp.log(abs(mp.det(mp.matrix(columns)))))
-    exponents = vs.lyapunov(system, [float(one) for one in start], 0, 1)
-    assert len(end.contacts) >= 3
-    assert exponents.sum() * system.period == pytest.approx(wanted, abs=1e-9)
-    assert abs(exponents.residual) < 1e-12

@@ -101,8 +101,8 @@ def _conditions(kind, M):
         return mp.diff(det, mu)
 
     def pair():
-        values = mp.eig(M, left=False, right=False)
-        return abs(min((mu for mu in values if mu.imag > 0), key=lambda mu: abs(abs(mu) - 1))) ** 2 - 1
+        values = mp.eig(M, left=False, right=False)  # real ones have an imaginary part of rounding
+        return abs(min((mu for mu in values if mu.imag > 1e-9), key=lambda mu: abs(abs(mu) - 1))) ** 2 - 1
 
     if kind in ("resonance_1_3", "resonance_1_4"):
         value = det(mp.expjpi(mpf(2) / 3 if kind == "resonance_1_3" else mpf(1) / 2))

@@ -24,7 +24,7 @@ from vibro_sweep.engine.impulses.flow import flow
 from vibro_sweep.engine.impulses.free_modes import ResonanceError, TooStiffError
 from vibro_sweep.model.arguments import checked_count, checked_state
 from vibro_sweep.model.errors import ArgumentError
-from vibro_sweep.model.linear import Family, family_of, forcing_period
+from vibro_sweep.model.linear import Family, amplitudes, family_of, forcing_period
 from vibro_sweep.model.real import array_of
 from vibro_sweep.model.refusals import not_allowed
 
@@ -35,6 +35,7 @@ SAME = 1e-7  # relative difference of solutions from two seeds that are one, and
 ROUNDS = 4  # periods that are simulated, so that a whole one begins between any two of its events
 ROUNDING = 1e-9  # of a period
 SETTLED = 1e-3  # relative change of the state over the period of an orbit that it is taken to be near
+STARTS, SETTLING = 12, 300  # of simulations, and their forcing periods
 MOST_PERIODS = 10**6
 MOST_IMPACTS = 1000  # of an itinerary: each has thousands of seeds
 
@@ -49,7 +50,8 @@ def periodic_orbit(system, state=None, periods: int = 1, itinerary: str | None =
     itinerary : the stops it hits, such as "LR", instead of a state; "" for the orbit without impacts
     guess : [(t, side, v), ...] with it or without: impacts of the whole orbit in order, from any one of them, v the gap
         velocity before.
-        Without a guess fixed seeds are tried; the first real orbit with this itinerary counts.
+        Without a guess fixed seeds are tried; the first real orbit with this itinerary counts. With compliant stops a
+        few simulations are tried last.
 
     Raises ValueError for arguments that say nothing or contradict each other. `.status` says what fails.
 
@@ -238,7 +240,22 @@ def _from_itinerary(system, family, sides, periods) -> PeriodicOrbit:
                 found = with_rests(guess)
                 if found is not None and len(found.reduced().whole().sides) == len(sides):
                     return found_orbit(system, found)
-    return found_orbit(system, virtual)
+    attracting = _attracting(system, family, sides, periods) if family.linear.compliant else None
+    return attracting or found_orbit(system, virtual)
+
+
+def _attracting(system, family, sides, periods) -> PeriodicOrbit | None:
+    """The orbit with these contacts, if one of a few simulations comes to it."""
+    if isinstance(system, Family):
+        return None
+    q, letters = family.linear, word(sides)
+    size = np.kron(np.abs(amplitudes(q)), [1.0, q.omega])  # of x1 v1 .. xN vN in the free motion
+    for state in size * np.random.default_rng(0).uniform(-1, 1, (STARTS, len(size))):
+        simulated = simulate(system, state, SETTLING)
+        found = _from_state(system, family, simulated.section[-1], periods) if str(simulated.status) == "ok" else None
+        if found and found.ok and len(found.itinerary) == len(letters) and found.itinerary in 2 * letters:
+            return found
+    return None
 
 
 def _with_contacts(start: Solution) -> Iterator[Solution]:
