@@ -148,7 +148,7 @@ class AnyShooting:
 
         def test(A, n, u, _):
             mu = mp.eig(self.monodromy(A, n, u), left=False, right=False)
-            return [abs(min((m for m in mu if m.imag > 1e-9), key=lambda m: abs(abs(m) - 1))) ** 2 - 1]
+            return [abs(min((m for m in mu if m.imag > 0), key=lambda m: abs(abs(m) - 1))) ** 2 - 1]
 
         return self.solve(u, name, value, test)[len(u)]
 
