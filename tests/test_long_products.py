@@ -6,7 +6,7 @@ from mpmath import mp, mpf
 from support import slow_cases
 from support.oscillators import PAPER
 
-from vibro_sweep.analysis.periodic.orbit_multipliers import multipliers_of
+from vibro_sweep.analysis.periodic.orbit_multipliers import multipliers_of, squared
 from vibro_sweep.engine.impulses.flow import flow
 
 P = 5.0
@@ -40,3 +40,8 @@ def test_each_multiplier_keeps_its_digits(R, fastest):
     R = contacts[0, 1] - 1  # as it is known
     error = np.log(10) * np.abs(np.log10(np.abs(found)) - exact(f.B, R, t, motion)).max()
     assert error < 1e-11
+
+
+def test_an_infinite_multiplier_of_half_a_period_is_infinite_over_the_whole():
+    """As at the graze of a contact without preload; a complex number that is infinite has the square NaN."""
+    assert squared(np.array([np.inf, 0.5j, -2.0], complex)).tolist() == [np.inf, -0.25, 4.0]

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vibro_sweep.analysis.continuation.recorded import Rows
-from vibro_sweep.analysis.periodic.orbit_multipliers import multipliers_of
+from vibro_sweep.analysis.periodic.orbit_multipliers import multipliers_of, squared
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses.flow import flow
 from vibro_sweep.model.linear import Linear, forcing_period
@@ -99,6 +99,6 @@ def _multipliers(start: Solution, name: str, oscillators: list[Linear], rows: Ro
         contacts[:, 1] = 1 + q.restitution(sides)
         P, u = forcing_period(q) / 2 * start.half_periods, np.concatenate([t, D])
         result.append(multipliers_of(flow(q), start.sigma, P, contacts, u, motion))
-    values = np.array(result) if start.sigma == 1 else np.array(result) ** 2
+    values = np.array(result) if start.sigma == 1 else squared(np.array(result))
     order = np.lexsort((-values.imag, -np.abs(values)), axis=-1)
     return np.take_along_axis(values, order, axis=-1)

@@ -10,7 +10,7 @@ from vibro_sweep.analysis.branches import branch_points
 from vibro_sweep.analysis.branches.special import bare
 from vibro_sweep.analysis.continuation.recorded import Rows
 from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve
-from vibro_sweep.analysis.periodic.orbit_multipliers import multipliers_of
+from vibro_sweep.analysis.periodic.orbit_multipliers import multipliers_of, squared
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.engine.continuation.curve_tests import TOUCHING
 from vibro_sweep.engine.continuation.problem import FLIP, FOLD, GRAZE, STICK, TORUS
@@ -62,7 +62,7 @@ def dataset(curve: SolutionCurve, rows: Rows) -> "xarray.Dataset":
         states.append(_state(q, f, s.sigma, P, t + shifts[-1], D, h))
     values = np.array(multipliers)
     unstable = others_outside(values, kind, rows.p[:, THETA])
-    values **= 1 if s.sigma == 1 else 2
+    values = values if s.sigma == 1 else squared(values)
     order = np.lexsort((-values.imag, -np.abs(values)), axis=-1)
     values = np.take_along_axis(values, order, axis=-1)
     pulls = -sides[others] * rows.D[:, others] <= -TOUCHING * curve.units.speed

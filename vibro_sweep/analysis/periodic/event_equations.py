@@ -72,7 +72,8 @@ class EventEquations:
             from scipy.linalg import eigvals
 
             over, under = eigvals(behind, ahead, homogeneous_eigvals=True)
-            values = np.divide(over, under, out=np.full(n, np.inf, complex), where=under != 0)
+            finite = np.abs(under) > np.finfo(float).tiny * np.abs(over)  # the quotient of complex numbers would be NaN
+            values = np.divide(over, under, out=np.full(n, np.inf, complex), where=finite)
         return values[np.lexsort((-values.imag, -np.abs(values)))]
 
     def newton(self, starts, oscillators=()) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

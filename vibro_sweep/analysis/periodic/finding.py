@@ -35,7 +35,7 @@ SAME = 1e-7  # relative difference of solutions from two seeds that are one, and
 ROUNDS = 4  # periods that are simulated, so that a whole one begins between any two of its events
 ROUNDING = 1e-9  # of a period
 SETTLED = 1e-3  # relative change of the state over the period of an orbit that it is taken to be near
-STARTS, SETTLING = 12, 300  # of simulations, and their forcing periods
+STARTS, SETTLING = 12, 300  # of simulations, and their forcing periods: more than those of the orbit
 MOST_PERIODS = 10**6
 MOST_IMPACTS = 1000  # of an itinerary: each has thousands of seeds
 
@@ -240,7 +240,8 @@ def _from_itinerary(system, family, sides, periods) -> PeriodicOrbit:
                 found = with_rests(guess)
                 if found is not None and len(found.reduced().whole().sides) == len(sides):
                     return found_orbit(system, found)
-    attracting = _attracting(system, family, sides, periods) if family.linear.compliant else None
+    simulated = family.linear.compliant and periods <= SETTLING
+    attracting = _attracting(system, family, sides, periods) if simulated else None
     return attracting or found_orbit(system, virtual)
 
 

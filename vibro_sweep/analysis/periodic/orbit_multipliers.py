@@ -32,6 +32,11 @@ def multipliers_of(f: Flow, sigma: int, P: float, contacts: np.ndarray, u, motio
     return values[np.lexsort((-values.imag, -np.abs(values)))]
 
 
+def squared(values: np.ndarray) -> np.ndarray:
+    """Multipliers of the whole period from those of half of it. An infinite one stays so: as a product it were NaN."""
+    return np.square(values, out=np.full(values.shape, np.inf, complex), where=~np.isinf(values))
+
+
 def contacts_of(q: Linear, sides) -> np.ndarray:
     """(K, 2) stop and 1 + R."""
     sides = np.asarray(sides)

@@ -12,6 +12,7 @@ from vibro_sweep.analysis.periodic import orbit_text
 from vibro_sweep.analysis.periodic.contact_table import contacts_between
 from vibro_sweep.analysis.periodic.event_equations import EventEquations
 from vibro_sweep.analysis.periodic.itinerary import canonical_start, word
+from vibro_sweep.analysis.periodic.orbit_multipliers import squared
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.analysis.single.result import Result, event_table, shows_force
 from vibro_sweep.engine.impulses import flights
@@ -175,7 +176,7 @@ class PeriodicOrbit(Result):
             return np.empty(0, complex)
         values = self._solution.multipliers
         if self.symmetric:
-            values = values**2
+            values = squared(values)
             values = values[np.lexsort((-values.imag, -np.abs(values)))]
         return values
 

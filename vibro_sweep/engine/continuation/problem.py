@@ -27,10 +27,8 @@ class Problem(NamedTuple):
     unit: np.ndarray  # (2,) of these
     repeats: bool  # whether the second half of the orbit may repeat the first one
     mirrors: bool  # whether it may be its mirror image
-    compliant: (
-        np.ndarray | None
-    )  # (2,) whether the left and the right stop is. None where no event lasts, R > 0: nothing
-    # of such events is compiled then
+    compliant: np.ndarray | None  # (2,) whether the left and the right stop is. None where no event lasts, since R > 0:
+    # nothing of such events is compiled then
 
 
 @jit
