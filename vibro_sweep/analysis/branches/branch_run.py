@@ -33,6 +33,7 @@ FIRST_STEP = 6e-4
 OF_STABLE = 4e-3  # the same of an orbit that was not just born
 MOST_POINTS = 20_000
 BEFORE = 1e-8  # share of the way to a graze
+ABOVE_ROUNDING = 1e-13  # length of a step, nearer than which to a graze multipliers have any sign
 DIVISIONS = 60  # of a step in which more happens than its tests tell, in all
 
 
@@ -205,7 +206,7 @@ class BranchRun:
         if birth:
             before = before_birth(self.curve, a, birth.share * along(a, last), birth.place)
         elif end and end.event.impact is not None:
-            before = self.curve.step(a, (1 - BEFORE) * along(a, last), last)
+            before = self._before_graze(a, last)
         told = before or last
         found = [] if birth else bifurcations(self.curve, a, told if end and turns_at(self.curve, end.event) else last)
         if (
@@ -236,6 +237,12 @@ class BranchRun:
                 self._forget_beside(last.value, end.error)
             self.special.append(self._end(end.event, last, end.error))
         return end is not None
+
+    def _before_graze(self, a: Point, graze: Point) -> Point | None:
+        """A point between a and the graze, where multipliers are finite; None where rounding leaves no room for one."""
+        length = along(a, graze)
+        room = max(BEFORE * length, ABOVE_ROUNDING)
+        return self.curve.step(a, length - room, graze) if room < length else None
 
     def _forget_beside(self, value: float, error: float) -> None:
         """Take back bifurcations that rounding does not tell from the graze: multipliers of free modes are 1 there."""

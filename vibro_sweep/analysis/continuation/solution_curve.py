@@ -8,7 +8,7 @@ import numpy as np
 from vibro_sweep.analysis.continuation.oscillators import Oscillators
 from vibro_sweep.analysis.continuation.point import Point
 from vibro_sweep.analysis.continuation.starting_orbit import Start, keeps_symmetry
-from vibro_sweep.analysis.periodic.contact_numbers import Units, one_plus_R, which_press
+from vibro_sweep.analysis.periodic.contact_numbers import Units, compliant_stops, one_plus_R
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation import path, stepper
 from vibro_sweep.engine.continuation.curve_tests import TOUCHING
@@ -61,7 +61,7 @@ class SolutionCurve:
         mirrors = mirrors and q.symmetric and all(keeps_symmetry(s.family, name) for name in self.names)
         sides, rests, count = np.array(which, float), np.isin(np.arange(K), s.rests), len(self.names)
         kinds, orbit = (kind, start.index, sides, rests), (float(s.sigma), count, self.unit, repeats, mirrors)
-        self.problem = Problem(*kinds, *orbit, which_press(q))
+        self.problem = Problem(*kinds, *orbit, compliant_stops(q))
         self.workspace = new_workspace(K, self.n)
         self.path = path.new_path(AT_ONCE, K, self.n, LONGEST_STEP, SHORTEST_STEP, STRAIGHT, self.bounds)
 

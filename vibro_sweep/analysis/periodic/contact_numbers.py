@@ -48,7 +48,7 @@ def one_plus_R(q: Linear, sides) -> np.ndarray:
     return 1 + np.where(q.is_compliant(sides), 0.0, q.restitution(sides))
 
 
-def which_press(q: Linear) -> np.ndarray | None:
+def compliant_stops(q: Linear) -> np.ndarray | None:
     """(2,) whether the left and the right stop are compliant; None where no event lasts: both are rigid, R > 0."""
     return np.array([q.k_low > 0, q.k_high > 0]) if q.compliant or min(q.R_low, q.R_high) == 0 else None
 

@@ -162,7 +162,8 @@ class Solution:
     @cached_property
     def products(self) -> np.ndarray:
         """mu_i mu_j, i < j."""
-        return np.array([a * b for a, b in combinations(self.multipliers, 2)])
+        with np.errstate(invalid="ignore"):  # an infinite one times zero
+            return np.array([a * b for a, b in combinations(self.multipliers, 2)])
 
     @cached_property
     def torus(self) -> float:

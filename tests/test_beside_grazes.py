@@ -1,0 +1,28 @@
+"""A graze is the same from whichever orbit beside it its branch is followed, however near.
+
+With `-m slow` more seeds; the full counts: tests/data/compliant_bifurcations.log, tests/data/random_branches.log.
+"""
+
+import pytest
+from support import slow_cases
+from support.beside_grazes import study
+
+# Seeds whose graze was once taken for another one, or lost, from a start 1e-6 to 1e-11 beside it.
+ONCE_LOST = [("rigid", 21), ("rigid", 46), ("rigid", 74), ("compliant", 1180)]
+
+
+@pytest.mark.parametrize("stops, seed", ONCE_LOST)
+def test_a_graze_is_the_same_from_every_orbit_beside_it(stops, seed):
+    counted, wrong = study(seed, stops)
+    assert counted["starts"] >= 10
+    assert not wrong
+
+
+@pytest.mark.parametrize("stops", slow_cases("rigid", "compliant"))
+def test_grazes_of_random_branches_from_orbits_beside_them(stops):
+    counted = 0
+    for seed in range(100, 130):
+        found, wrong = study(seed, stops)
+        counted += found["starts"]
+        assert not wrong
+    assert counted >= 100
