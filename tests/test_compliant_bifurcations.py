@@ -275,7 +275,7 @@ def test_windows_of_one_elastic_stop():
     "seeds",
     [
         range(1, 2),
-        *slow_cases([*range(4), 45], [*range(1000, 1004), 1034, 1151]),
+        *slow_cases([*range(4), 45], [*range(1000, 1004), 1034, 1151, 1865]),
         pytest.param(range(300), marks=pytest.mark.soak),
         pytest.param(range(1000, 1300), marks=pytest.mark.soak),
     ],

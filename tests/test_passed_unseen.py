@@ -12,7 +12,8 @@ from vibro_sweep.analysis.branches import branch_run
 from vibro_sweep.analysis.branches.crossings import explained, stands_alone
 from vibro_sweep.analysis.branches.looking import extremum
 from vibro_sweep.analysis.continuation import solution_curve
-from vibro_sweep.engine.continuation.branch_tests import FARTHER
+from vibro_sweep.engine.continuation.branch_tests import FARTHER, dips
+from vibro_sweep.engine.simd.jit import exported
 
 BESIDE = vs.Oscillator(
     M=[[1.013195585878699, -0.55204056781175], [-0.55204056781175, 2.637855657462587]],
@@ -121,23 +122,30 @@ def test_counts_tell_what_is_missing(paths):
     assert refused < 0.02 * counted
 
 
+@exported
+def dips_at(x, y, z, before, behind):
+    return dips(x, y, z, before, behind)
+
+
 def test_an_extremum_is_looked_for_where_a_parabola_comes_nearer_to_zero():
-    """Of 2000 parabolas at three points those with two zeros within half a step of the middle one, and few others but
-    those of which the middle point is much nearer to zero."""
-    rng, looked, hidden = np.random.default_rng(3), 0, 0
-    for _ in range(2000):
+    """Of 4000 parabolas at three points those with two zeros near the middle one, or between it and the last, and few
+    others but those of which the middle point is much nearer to zero."""
+    rng, looked, hidden = np.random.default_rng(3), 0, [0, 0]
+    for _ in range(4000):
         before, behind = rng.uniform(0.5, 1.5, 2)
-        at, least, curve = rng.uniform(-0.4, 0.4), rng.uniform(-0.2, 2.0), rng.uniform(0.2, 5.0)
+        at, least, curve = rng.uniform(-0.4, 1.0) * behind, rng.uniform(-0.2, 2.0), rng.uniform(0.2, 5.0)
         x, y, z = (least + curve * (place - at) ** 2 for place in (-before, 0.0, behind))
-        if not (0 < y <= x and y <= z):
+        if not (0 < y <= x and z > 0):
             continue
         found = extremum(before, behind, x, y, z)
+        assert dips_at(x, y, z, before, behind) == (found is not None)
+        assert dips_at(-x, -y, -z, before, behind) == (found is not None)
         looked += found is not None and min(x, z) <= FARTHER * y
         if least < 0:
-            hidden += 1
+            hidden[int(z < y)] += 1
             assert found == pytest.approx(at, abs=1e-9)
-    assert hidden > 20
-    assert looked < 0.3 * 2000
+    assert min(hidden) > 20
+    assert looked < 0.3 * 4000
 
 
 def loaded_ball(b: float):

@@ -16,6 +16,7 @@ from vibro_sweep.analysis.branches.branch_points import dataset, dataset_from_fi
 from vibro_sweep.analysis.branches.branch_start import NoStartError, changes_rests, start_of_run
 from vibro_sweep.analysis.branches.compiled_stepper import row_of
 from vibro_sweep.analysis.branches.free_run import run_from
+from vibro_sweep.analysis.branches.sizes import in_range
 from vibro_sweep.analysis.branches.special import SpecialPoint, table_of
 from vibro_sweep.analysis.branches.sticking import sticking_onset
 from vibro_sweep.analysis.continuation.recorded import Rows, both_directions
@@ -122,7 +123,7 @@ def continue_orbit(orbit: PeriodicOrbit, parameter: str, bounds: tuple[float, fl
         allowed = "another number: an orbit that rests after one impact does so at R = 0"
         raise ArgumentError(not_allowed("parameter", parameter, allowed))
     lo, hi = checked_interval("bounds", bounds, family.numbers[parameter])
-    lo, hi = (_allowed(orbit.system, parameter, bound) for bound in (lo, hi))
+    lo, hi = (in_range(orbit.system, parameter, bound) for bound in (lo, hi))
     try:
         first = start_of_run(solution, parameter, lo, hi)
     except NoStartError:
@@ -146,27 +147,6 @@ def not_followed(orbit: PeriodicOrbit, parameter: str) -> Branch:
     value = s.family.numbers[parameter]
     end = SpecialPoint("failed", {parameter: value}, orbit, s.multipliers)
     return Branch(parameter, [end], end, end, False, s, frame, row_of(value, s, frame))
-
-
-def _allowed(system, name: str, bound: float) -> float:
-    """`bound`, or the last value before it that the system accepts."""
-
-    def accepted(value: float) -> bool:
-        try:
-            system.replace(**{name: value})
-        except ValueError:
-            return False
-        return True
-
-    if accepted(bound):
-        return bound
-    inside = family_of(system).numbers[name]
-    if bound < 0 < inside and accepted(0.0):
-        return 0.0
-    outside = bound
-    while (middle := (inside + outside) / 2) not in (inside, outside):
-        inside, outside = (middle, outside) if accepted(middle) else (inside, middle)
-    return inside
 
 
 def _accumulation(end: SpecialPoint, lo: float, hi: float) -> tuple[SpecialPoint, list[SpecialPoint]]:

@@ -191,7 +191,8 @@ def torus_test(a: Point, b: Point) -> Test | None:
 
     def test(point: Point) -> float:
         factors, mu = 1 - point.solution.products, point.solution.multipliers
-        product = np.prod(factors[np.argsort(np.abs(factors))[left_out:]] if left_out else factors).real
+        with np.errstate(invalid="ignore"):  # of an infinite multiplier
+            product = np.prod(factors[np.argsort(np.abs(factors))[left_out:]] if left_out else factors).real
         return float(product / np.prod(np.hypot(1, np.abs(mu))) ** (len(mu) - 1))
 
     return test

@@ -14,7 +14,7 @@ from vibro_sweep.analysis.branches.looking import hidden_between
 from vibro_sweep.analysis.branches.own_birth import before_birth, lands_on_birth, own_birth
 from vibro_sweep.analysis.branches.passed_births import before_passed, how_many_on, passed
 from vibro_sweep.analysis.branches.permanent_contact import permanent_contact
-from vibro_sweep.analysis.branches.special import SpecialPoint, graze_at, vanishing
+from vibro_sweep.analysis.branches.special import TOUCHING, SpecialPoint, graze_at, shallow, vanishing
 from vibro_sweep.analysis.branches.split_contacts import joined_contacts
 from vibro_sweep.analysis.continuation.events import Event, LocatedEvent
 from vibro_sweep.analysis.continuation.point import Point, along
@@ -34,6 +34,7 @@ OF_STABLE = 4e-3  # the same of an orbit that was not just born
 MOST_POINTS = 20_000
 BEFORE = 1e-8  # share of the way to a graze
 ABOVE_ROUNDING = 1e-13  # length of a step, nearer than which to a graze multipliers have any sign
+TOGETHER = 1e-5  # in phase: a turning point that is nearer to a contact without depth is its own
 DIVISIONS = 60  # of a step in which more happens than its tests tell, in all
 
 
@@ -93,7 +94,13 @@ class BranchRun:
             if self._pass(a, b, beside=(before, None)):
                 return
             compiled.accept(a, b)
-        self.special.append(self._at("failed", a, math.nan) if a else self._fail_behind_last())
+        self.special.append(self._fail_at(a) if a else self._fail_behind_last())
+
+    def _fail_at(self, a: Point) -> SpecialPoint:
+        """`failed` at this point, or the graze at which it lies to rounding: all contacts may vanish there at once."""
+        if abs(a.stop_distance) <= TOUCHING * a.solution.size_of_gap or np.any(shallow(a.solution)):
+            return self._end(Event("graze", lambda point: point.stop_distance, touches=True), a, 0.0)
+        return self._at("failed", a, math.nan)
 
     def _fail_behind_last(self) -> SpecialPoint:
         """`failed` at the last point, at which no derivatives are known."""
@@ -279,6 +286,8 @@ class BranchRun:
         if event.type != "graze":
             return self._at(event.type, point, error)
         index = event.impact
+        if index is None:  # behind a contact that vanishes the motion passes the stop, too
+            index = touched_by(point.solution)
         if index is not None:  # of those that vanish at once the first
             first = orbit_of(None, point.solution)._canonical_frame[0]
             index = min(vanishing(point.solution, index).tolist(), key=lambda i: (i - first) % point.solution.K)
@@ -289,7 +298,7 @@ class BranchRun:
         side = graze.touching.sides[graze.index]
         slope = abs(graze.distance_slope)
         if slope > 0:
-            error += float(16 * np.finfo(float).eps * point.solution.size_of_gap / slope)
+            error += float(TOUCHING * point.solution.size_of_gap / slope)
         impact, multipliers = None, None
         if index is not None:
             multipliers = graze.multipliers
@@ -298,6 +307,17 @@ class BranchRun:
             "graze", point, error, multipliers, stop=side, kind=graze.kind, impact=impact,
             direction=1 if graze.distance_slope > 0 else -1,
         )  # fmt: skip
+
+
+def touched_by(solution: Solution) -> int | None:
+    """The contact without depth at which the turning point nearest to its stop lies; None where it lies elsewhere."""
+    gone = shallow(solution)
+    distance, time, _ = solution.nearest
+    if not np.any(gone) or not math.isfinite(distance):
+        return int(np.argmax(gone)) if np.any(gone) else None
+    apart = np.abs((solution.times - time + solution.P / 2) % solution.P - solution.P / 2)
+    index = int(np.argmin(np.where(gone, apart, np.inf)))
+    return index if apart[index] * solution.family.linear.omega < TOGETHER else None
 
 
 def turns_at(curve: SolutionCurve, event: Event) -> bool:

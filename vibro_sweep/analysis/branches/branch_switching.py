@@ -12,6 +12,7 @@ from vibro_sweep.analysis.branches.split_contacts import in_two, set_apart
 from vibro_sweep.analysis.continuation.solution_curve import branch_through
 from vibro_sweep.analysis.periodic.joined_contacts import contacts_are_one, without_flights
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit, found_orbit
+from vibro_sweep.analysis.periodic.seeds_of_free_motion import touches_of_free_motion
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.model.arguments import check_type
 from vibro_sweep.model.bifurcations import BY_NAME, WAYS
@@ -51,12 +52,20 @@ def _beyond_graze(special: SpecialPoint) -> list[Solution | None]:
     if parent.K:
         index = None if special.impact is None else index_in(special)
         return [_beside(parent, name, index)]
-    family = parent.family
-    result = [_beside(parent, name, None)]
+    free = Solution(parent.family, 1, 2, (), np.empty(0))
     if parent.sigma == -1:  # the motion touches both stops at once: orbits that hit one of them
-        one = _beside(Solution(family, 1, 2, (), np.empty(0)), name, None)
-        result += sorted([one, mirrored(one)], key=_on_the_left) if one else []
-    return result
+        one = _beside(free, name, None)
+        return [_beside(parent, name, None), *(sorted([one, mirrored(one)], key=_on_the_left) if one else [])]
+    both = touches_of_free_motion(free)
+    if len(both) < 2:
+        return [_beside(parent, name, None)]
+    return [_beside(free, name, None, _with_touches(free, some)) for some in (both, both[:1], both[1:])]
+
+
+def _with_touches(free: Solution, touches: list[tuple[float, int]]) -> Solution:
+    for index, (time, side) in enumerate(touches):
+        free = free.with_touch(index, time, side)
+    return free
 
 
 def _beyond_split(special: SpecialPoint) -> list[Solution | None]:
@@ -97,11 +106,12 @@ def index_in(special: SpecialPoint) -> int:
     return (special.impact + first) % special.orbit._solution.K
 
 
-def _beside(solution: Solution, name: str, impact: int | None) -> Solution | None:
-    """The orbit with (without) the grazing impact, a little beside the graze on the side where it exists."""
+def _beside(solution: Solution, name: str, impact: int | None, touching: Solution | None = None) -> Solution | None:
+    """The orbit with (without) the grazing impact, a little beside the graze on the side where it exists; `touching` as
+    of `graze_at`."""
     value = solution.family.numbers[name]
     try:
-        graze = graze_at(solution, name, impact)
+        graze = graze_at(solution, name, impact, touching)
         target = graze.touching if impact is None else graze.without
         grows = math.isinf(graze.speed_slope) and impact is None
         du = np.zeros(len(target.u)) if grows else slopes(target, name)
@@ -125,18 +135,20 @@ def _beside(solution: Solution, name: str, impact: int | None) -> Solution | Non
 
 
 def pressed(graze: Graze, step: float) -> np.ndarray:
-    """The unknowns of the orbit with a short contact, where the parameter is beyond the graze by `step`.
+    """The unknowns of the orbit with short contacts, where the parameter is beyond the graze by `step`.
 
     The gap, which turns with the acceleration a, is behind the stop by d = |slope step| at most: for the time s with
     d = |a| s^2/8, and touches it with the speed |a| s/2.
     """
-    target, k = graze.touching, graze.index
-    a = abs(float(target.motion[k, 1]))
-    s = math.sqrt(8 * abs(graze.distance_slope * step) / a)
+    target = graze.touching
     u, K = target.u.copy(), target.K
-    u[k] -= s / 2
-    u[K + k] -= target.sides[k] * a * s / 2
-    u[2 * K + target.rests.index(k)] += s / 2
+    for k, slope in zip(graze.gone.tolist(), graze.distance_slopes, strict=True):
+        if k in target.rests:
+            a = abs(float(target.motion[k, 1]))
+            s = math.sqrt(8 * abs(slope * step) / a)
+            u[k] -= s / 2
+            u[K + k] -= target.sides[k] * a * s / 2
+            u[2 * K + target.rests.index(k)] += s / 2
     return u
 
 

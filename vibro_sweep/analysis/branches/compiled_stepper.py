@@ -91,9 +91,9 @@ class CompiledStepper:
         return guess and self.curve.correct(guess, self.a.direction)
 
     def point_behind(self, rows: Rows) -> Point | None:
-        """The last of two or more points; forwards is from the one before."""
+        """The last of two or more points; forwards is from the one before. None where one is no orbit any more."""
         before, last = self._guess(rows, -2), self._guess(rows, -1)
-        return self.curve.correct(last, self.curve.unit_row(self.curve.difference(before, last)))
+        return before and last and self.curve.correct(last, self.curve.unit_row(self.curve.difference(before, last)))
 
     def _guess(self, rows: Rows, i: int) -> Point | None:
         family, u = self.curve.oscillators.at(rows.p[i : i + 1 or None]), [rows.t[i], rows.D[i], rows.ends[i]]

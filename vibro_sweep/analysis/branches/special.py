@@ -73,9 +73,15 @@ class Graze:
     without: Solution
     touching: Solution
     index: int  # of that impact in `touching`
-    distance_slope: float  # d(distance from the stop)/dp along the orbits without it
+    gone: np.ndarray  # indices of all that have zero speed there
+    distance_slopes: np.ndarray  # d(distance from the stop)/dp of each of them, along the orbits without them
     speed_slope: float  # d(impact speed)/dp along the orbits with it
     multipliers: np.ndarray | None = None  # of the orbits with it, where all of the equations' are singular
+
+    @property
+    def distance_slope(self) -> float:
+        """That of the impact itself."""
+        return float(self.distance_slopes[self.gone == self.index][0])
 
     @property
     def kind(self) -> str:
@@ -84,6 +90,7 @@ class Graze:
 
 
 AT_ONCE = 1e-11  # the same, of impacts that vanish with another one, for all that rounding does
+TOUCHING = 2.0**-48  # of the gap's size, that counts as no distance from a stop
 
 
 def vanishing(solution: Solution, impact: int) -> np.ndarray:
@@ -92,29 +99,39 @@ def vanishing(solution: Solution, impact: int) -> np.ndarray:
     if solution.only_touches:
         return np.arange(solution.K)
     slow = AT_ONCE * solution.family.linear.omega * solution.size_of_gap
-    return np.union1d(np.flatnonzero(solution.pushes < slow), [impact])
+    return np.union1d(np.flatnonzero((solution.pushes < slow) | shallow(solution)), [impact])
 
 
-def graze_at(solution: Solution, name: str, impact: int | None) -> Graze:
+def shallow(solution: Solution) -> np.ndarray:
+    """(K,) whether events are contacts that begin smoothly, with the speed v, and end before the depth v^2/(2 |a|) is
+    more than rounding."""
+    smooth = [is_smooth(solution.family.linear, side) for side in solution.sides]
+    most = 2 * np.abs(solution.motion[:, 1]) * TOUCHING * solution.size_of_gap
+    return np.array(smooth, bool) & (solution.pushes**2 <= most)
+
+
+def graze_at(solution: Solution, name: str, impact: int | None, touching: Solution | None = None) -> Graze:
     """Unfold a graze: `impact` vanishes, or (None) the turning point nearest to its stop becomes an impact.
 
-    Raises LinAlgError where the orbit without the impact is at a fold.
+    touching : the free motion with several of them, in place of that. Raises LinAlgError where the orbit without the
+    impact is at a fold.
     """
-    if impact is None:
+    if touching is not None:
+        without, index, gone = solution, 0, np.arange(touching.K)
+    elif impact is None:
         without, (touching, index) = solution, inserted(solution)
         gone = np.array([index])
     else:
         touching, index, gone = solution, impact, vanishing(solution, impact)
         without = bare(solution, gone)
     side, q = touching.sides[index], solution.family.linear
-    distance_slope = Linearised(touching, solution.family.derivative(name), gone).distance_slope(index)
+    watched = Linearised(touching, solution.family.derivative(name), gone)
+    begins = without, touching, index, gone, np.array([watched.distance_slope(i) for i in gone.tolist()])
     if is_smooth(q, side):  # the speed grows like the square root of the distance passed
         # and where it ends by force the damper adds to the motion what is proportional to that distance
         begun = Linearised(touching, solution.family.derivative(name), gone, index)
-        speed_slope = math.copysign(np.inf, -begun.distance_slope(index))
-        return Graze(without, touching, index, distance_slope, speed_slope, begun.multipliers())
-    speed_slope = -side * slopes(touching, name)[touching.K + index] / one_plus_R(q, [side])[0]
-    return Graze(without, touching, index, distance_slope, float(speed_slope))
+        return Graze(*begins, math.copysign(np.inf, -begun.distance_slope(index)), begun.multipliers())
+    return Graze(*begins, float(-side * slopes(touching, name)[touching.K + index] / one_plus_R(q, [side])[0]))
 
 
 def inserted(solution: Solution, slow=()) -> tuple[Solution, int]:

@@ -16,7 +16,7 @@ from vibro_sweep.model.linear import MOTION, Family, Linear
 
 FEW = 4  # degree that is tried first
 DECAYED = 4e-15  # relative size of the last coefficients
-NARROWEST = 1e-7  # of what is asked for
+NARROWEST = 1e-11  # of what is asked for
 BEYOND = 1.2  # times the reach, up to where the polynomials hold
 KEPT = 64  # oscillators
 ASIDE = 0.37  # of the reach: where degrees are read off, so that products of both parameters are seen

@@ -80,7 +80,8 @@ class SolutionCurve:
         found = self.oscillators.around(centre, self.unit / len(self.names))
         if found is None:
             raise NoPlaneError(
-                f"bounds: around {tuple(map(float, centre))} the oscillator is not a smooth function of it"
+                f"bounds: around {tuple(map(float, centre))} the oscillator is not a smooth function of it, "
+                "or they are too wide for it"
             )
         return found
 

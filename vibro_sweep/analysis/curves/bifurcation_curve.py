@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vibro_sweep.analysis.branches.sizes import in_range
 from vibro_sweep.analysis.branches.special import SpecialPoint, table_of
 from vibro_sweep.analysis.continuation.chatter import written_out
 from vibro_sweep.analysis.continuation.first_point import converge, first_place, guess_of
@@ -142,6 +143,8 @@ def bifurcation_curve(
         checked_interval(f"bounds.{name}", ends, family.numbers[name])
         for name, ends in zip(names, values.tolist(), strict=True)
     ]
+    system = special.orbit.system
+    limits = [[in_range(system, name, end) for end in ends] for name, ends in zip(names, limits, strict=True)]
     check_call("progress", progress, "progress(points, (p, q))", 0, (0.0, 0.0))
     virtual = checked_flag("virtual", virtual)
     start = start_at(special, names)
@@ -154,14 +157,15 @@ def bifurcation_curve(
         first = next((place for place in places if curve.is_real(place)), (places or [first])[0])
     if not (virtual or curve.is_real(first)):
         raise ArgumentError(f"special: beside this {special.type} there is no motion")
+    first.p[:2] = np.clip(first.p[:2], *curve.bounds.T)  # rounding may put it beyond what is allowed
     rates = first.tangent_p[:2]
     sign = -1 if rates[np.argmax(np.abs(rates) > LEVEL)] > 0 else 1  # down in the first parameter that changes
-    down = CurveRun(curve, first, sign, special.orbit.system, progress, virtual)
+    down = CurveRun(curve, first, sign, system, progress, virtual)
     down.follow()
     if down.closed:
         ends = down.special
         return BifurcationCurve(start.type, names, ends, ends[-1], ends[-1], True, curve, down.points)
-    up = CurveRun(curve, first, -sign, special.orbit.system, progress, virtual)
+    up = CurveRun(curve, first, -sign, system, progress, virtual)
     up.follow()
     ends = [*reversed(down.special), *up.special]
     rows = both_directions(down.points, up.points)

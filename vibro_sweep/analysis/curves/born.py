@@ -33,7 +33,7 @@ from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve, bran
 from vibro_sweep.analysis.continuation.starting_orbit import Start
 from vibro_sweep.analysis.curves.curve_run import CurvePoint
 from vibro_sweep.analysis.curves.curve_start import as_special
-from vibro_sweep.analysis.curves.pair import in_time, rates_of_pair, second_order
+from vibro_sweep.analysis.curves.pair import in_phase, in_time, rates_of_pair, second_order
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation import stepper
 from vibro_sweep.engine.continuation.curve_tests import TOUCHING
@@ -48,8 +48,8 @@ BEGINS = {one.name: one.begins for one in CODIMENSION_TWO}
 
 
 class Entry(NamedTuple):
-    """A guess of a point of such a curve: the orbit and its change (2K,) from the parent, taken several times; how far
-    the parameters have moved, by the normal form (None: not known).
+    """A guess of a point of such a curve: the orbit and its change, as `Solution.u`, from the parent, taken several
+    times; how far the parameters have moved, by the normal form (None: not known).
     """
 
     start: Start
@@ -97,7 +97,7 @@ def entry(special: CurvePoint, name: str, parent: Start, count: int, amplitude: 
     if place is None:
         return None
     critical = place.v[:, -2:].T.ravel()  # of phases and jumps
-    w, factor = critical * in_time(curve, place), amplitude / critical[np.argmax(np.abs(critical))]
+    w, factor = in_time(curve, place, critical), amplitude / critical[np.argmax(np.abs(critical))]
     if count == 4:
         found = _quarter(curve, place, abs(factor), name, sign)
         if found is None:
@@ -108,11 +108,10 @@ def entry(special: CurvePoint, name: str, parent: Start, count: int, amplitude: 
         child = replace(_bent(child, curve, place, factor, moved), family=family)
         return Entry(Start(name, child, theta=theta), change, moved)
     child, change = repeated(parent.solution, 2, factor * w, -1.0)
-    if name == "fold":
-        return Entry(Start(name, child), change, None)
     if name == "graze":  # at the turning point that is nearest to its stop
         touching, index = inserted(child)
-        return Entry(Start(name, touching, index), np.insert(change, [index, child.K + index], 0.0), None)
+        places = [index, child.K + index, *(2 * child.K + touching.rests.index(i) for i in {index} & {*touching.rests})]
+        return Entry(Start(name, touching, index), np.insert(change, places, 0.0), None)
     if special.type == "flip_neimark_sacker":
         mu = parent.solution.multipliers
         pair = mu[np.argmin(np.where(mu.imag > 1e-6, np.abs(np.abs(mu) - 1), np.inf))]
@@ -120,6 +119,8 @@ def entry(special: CurvePoint, name: str, parent: Start, count: int, amplitude: 
     across = int(np.argmin(np.abs(place.tangent_p[:2])))
     curve = branch_through(child, names[across], size_of(child, names[across]))
     found = with_amplitude(curve, child, change)
+    if name == "fold":
+        return found and Entry(Start(name, found), change, None)
     theta = found and _angle_near_one(found)
     return Entry(Start(name, found, theta=theta), change, None) if theta else None
 
@@ -137,7 +138,7 @@ def entered(special: CurvePoint, guess: Entry) -> SpecialPoint | None:
     names, values = tuple(special.parameters), np.array(list(special.parameters.values()))
     curve = SolutionCurve(guess.start, names, box_around(special))
     place = guess_of(curve)
-    row = None if place is None else np.append(guess.change / in_time(curve, place), np.zeros(3))
+    row = None if place is None else np.append(in_phase(curve, place, guess.change), np.zeros(3))
     place = place and converge(curve, place, curve.unit_row(row))
     if place is None:
         return None
@@ -169,8 +170,9 @@ def _bent(child: Solution, curve: SolutionCurve, place: Place, z: complex, moved
     K, s, count = curve.K, float(curve.orbit.sigma), child.K // curve.K
     turns, signs = (-1.0) ** np.arange(count)[:, None], s ** np.arange(count)[:, None]
     _, along = rates_of_pair(curve, place)
-    each = 2 * turns * (z * z * bend).real + abs(z) ** 2 * mean + along @ moved  # (count, 2K)
-    return replace(child, u=child.u + np.concatenate([each[:, :K].ravel(), (signs * each[:, K:]).ravel()]))
+    each = 2 * turns * (z * z * bend).real + abs(z) ** 2 * mean + along @ moved  # (count, 2K + rests)
+    times, impulses, ends = np.split(each, [K, 2 * K], axis=1)
+    return replace(child, u=child.u + np.concatenate([times.ravel(), (signs * impulses).ravel(), ends.ravel()]))
 
 
 def _quarter(curve: SolutionCurve, place: Place, size: float, name: str, sign: int):

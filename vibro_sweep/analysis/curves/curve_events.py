@@ -5,13 +5,14 @@ import math
 import numpy as np
 
 from vibro_sweep.analysis.continuation.events import Event, LocatedEvent
+from vibro_sweep.analysis.continuation.first_point import first_place
 from vibro_sweep.analysis.continuation.secant import error_of, root
 from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve
-from vibro_sweep.analysis.continuation.starting_orbit import CONDITIONS
+from vibro_sweep.analysis.continuation.starting_orbit import CONDITIONS, Start
 from vibro_sweep.analysis.curves.crossed import aside, crossed, is_lost, is_on_other
 from vibro_sweep.analysis.periodic.contact_numbers import has_corner, is_smooth
 from vibro_sweep.engine.continuation.curve_tests import TOUCHING
-from vibro_sweep.engine.continuation.problem import GRAZE, TORUS
+from vibro_sweep.engine.continuation.problem import FOLD, GRAZE, TORUS
 from vibro_sweep.engine.continuation.workspace import CURVE_TESTS, NAMES, TEST, THETA, Place
 from vibro_sweep.model.bifurcations import CODIMENSION_TWO
 
@@ -171,6 +172,8 @@ def locate(curve: SolutionCurve, event: Event, a: Place, b: Place) -> LocatedEve
 
     The error (`error_of`) is an estimate from several locations and from what rounding of the equations does.
     """
+    if event.impact is not None and is_divided(curve, event.impact):
+        return _along_grazes(curve, event, a, b)
     found = root(curve, a, b, event.test)
     settled = found is not None and found[1].tests[TEST.residual] <= SETTLED
     if event.impact is not None:
@@ -188,6 +191,39 @@ def locate(curve: SolutionCurve, event: Event, a: Place, b: Place) -> LocatedEve
             return None
     error = error_of(curve, a, b, event.test, share, place)
     return None if error is None else LocatedEvent(event, share, place, error)
+
+
+def is_divided(curve: SolutionCurve, impact: int) -> bool:
+    """Whether the condition of a critical orbit is divided by the length of this contact: rounding is, too."""
+    smooth = is_smooth(curve.orbit.family.linear, int(curve.problem.sides[impact]))
+    return smooth and FOLD <= curve.problem.kind <= TORUS
+
+
+def _along_grazes(curve: SolutionCurve, event: Event, a: Place, b: Place) -> LocatedEvent | None:
+    """The place between a and b at which a contact vanishes, on the curve of its grazes."""
+    before, behind = a.jumps[event.impact], b.jumps[event.impact]
+    aim, length = curve.between(a, b, before / (before - behind)), curve.distance(a, b)
+    found = on_grazes(curve, event.impact, aim, (length,))
+    if found is None or found.event.type != event.type:
+        return None
+    share = float(curve.unit_row(curve.difference(a, b)) @ curve.difference(a, found.place)) / length
+    return LocatedEvent(event, share, found.place, found.error) if 0.0 <= share <= 1.0 else None
+
+
+def on_grazes(curve: SolutionCurve, impact: int, aim: Place, lengths) -> LocatedEvent | None:
+    """The event at which the curve of critical orbits meets that of the grazes of this contact, near a place; located
+    along the latter, where nothing is divided by the contact's length."""
+    aim = curve.copied(aim)
+    aim.jumps[impact] = 0.0
+    types = [kind for kind in (type_at(curve, TOUCHES), type_at(curve, VANISHES)) if kind]
+    other = SolutionCurve(Start("graze", curve.solution(aim), index=impact), curve.names, curve.bounds)
+    first = first_place(other)
+    for length in lengths if first is not None else ():
+        found = event_near(other, first, length, types)
+        if found is not None:
+            aim.x[:], aim.p[:2] = found.place.x, found.place.p[:2]
+            return found._replace(place=aim)
+    return None
 
 
 def is_sharp(curve: SolutionCurve, event: Event, place: Place) -> bool:

@@ -18,6 +18,8 @@ from vibro_sweep.analysis.curves.curve_events import (
     beside,
     found_between,
     found_to_edge,
+    is_divided,
+    on_grazes,
     without_echoes,
 )
 from vibro_sweep.analysis.curves.ends import End, birth, birth_near, in_full, just_before, strong_resonance
@@ -35,6 +37,9 @@ from vibro_sweep.engine.impulses.flow import steady_motion
 FIRST_STEP = 1e-3
 CLOSE = 1e-6  # distance, in the units of a curve, from the first point where it comes back to it
 MOST_POINTS = 50_000
+SHORT = 1e-6  # length, in phase, of a contact next to which rounding of a critical orbit is too large
+LENGTHS = (1e-4, 1e-3, 1e-2)  # along a curve of grazes, in which the end is looked for there
+NEAR = 1e-2  # of the bounds, within which it lies
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -124,7 +129,7 @@ class CurveRun:
         end = birth_near(w, a) if w.problem.repeats or w.problem.mirrors else None
         if end is not None:
             self._end(end)
-        elif not (self._join_contacts(a) or self._lose_preload(a)):
+        elif not (self._join_contacts(a) or self._lose_preload(a) or self._reach_graze(a)):
             self.special.append(self._at("failed", a, np.nan))
 
     def _write_out(self, a: Place) -> bool:
@@ -266,6 +271,19 @@ class CurveRun:
         self._add_solution(np.append(place.p[:2], a.p[THETA]), place.solution)
         self.special.append(self._at("boundary", place, 0.0, curve=place.curve))
         return True
+
+    def _reach_graze(self, a: Place) -> bool:
+        """End at the graze of a contact that is about to vanish beside a: its length has no digits there. False: none
+        is."""
+        w = self.curve
+        for i in np.flatnonzero(np.abs(a.jumps) < SHORT):
+            found = on_grazes(w, int(i), a, LENGTHS) if is_divided(w, int(i)) else None
+            if found is not None and np.all(np.abs(found.place.p - a.p)[:2] <= NEAR * np.ptp(w.bounds, axis=1)):
+                self._add(found.place)
+                event = replace(found.event, impact=int(i))
+                self.special.append(self._at(event.type, found.place, found.error, event))
+                return True
+        return False
 
     def _add_solution(self, p: np.ndarray, s: Solution) -> None:
         """Record an orbit that is not of this curve."""

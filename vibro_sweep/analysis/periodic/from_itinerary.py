@@ -21,6 +21,7 @@ from vibro_sweep.model.linear import Family, amplitudes, forcing_period
 SEEDS = 4000
 AT_ONCE = 250  # of them: the orbit may be among the first
 MOMENTS = 24
+ROUNDING = 1e-9  # of the free motion, by which states are kept from rigid stops
 SAME = 1e-7  # relative difference of solutions from two seeds that are one, and in parts of their units
 STARTS, SETTLING = 12, 300  # of simulations, and their forcing periods: more than those of the orbit
 
@@ -60,7 +61,11 @@ def _attracting(system, family, sides, periods) -> PeriodicOrbit | None:
         return None
     q, letters = family.linear, word(sides)
     size = np.kron(np.abs(amplitudes(q)), [1.0, q.omega])  # of x1 v1 .. xN vN in the free motion
+    inside = ROUNDING * np.abs(q.normal @ size[::2])
+    rigid = [-np.inf if q.is_compliant(-1) else q.low + inside, np.inf if q.is_compliant(1) else q.high - inside]
     for state in size * np.random.default_rng(0).uniform(-1, 1, (STARTS, len(size))):
+        gap = q.normal @ state[::2]
+        state[::2] += (np.clip(gap, *rigid) - gap) * q.normal / (q.normal @ q.normal)
         simulated = simulate(system, state, SETTLING)
         found = from_state(system, family, simulated.section[-1], periods) if str(simulated.status) == "ok" else None
         if found and found.ok and len(found.itinerary) == len(letters) and found.itinerary in 2 * letters:

@@ -17,6 +17,17 @@ from vibro_sweep.model.linear import Family, Linear
 
 DEPTHS = 4.0 ** np.arange(-5, 1)  # of what the free motion passes a stop by
 SHORTEST = 1e-9  # of its amplitude
+TOUCHING = 1e-12  # of it, that counts as no distance from a stop
+
+
+def touches_of_free_motion(free: Solution) -> list[tuple[float, int]]:
+    """(time, side) of the turning points at which the free motion touches its stops, in the order of one period."""
+    q = free.family.linear
+    if has_free_gap(q):
+        return []
+    mean, swing = steady_gap(q)
+    sides = [side for side in (1, -1) if abs(abs(swing) - side * (float(q.stop(side)) - mean)) <= TOUCHING * abs(swing)]
+    return sorted((_time(q, swing, side, 0.0) % free.P, side) for side in sides)
 
 
 def from_free_motion(start: Solution) -> Solution | None:

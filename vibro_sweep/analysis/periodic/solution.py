@@ -168,9 +168,10 @@ class Solution:
     @cached_property
     def torus(self) -> float:
         """prod_{i<j} (1 - mu_i mu_j): zero at a Neimark-Sacker point, and at a neutral saddle. 1 without losses."""
-        if abs(abs(np.prod(self.multipliers)) - 1) < 1e-9:
-            return 1.0
-        return float(np.prod(1 - self.products).real)
+        with np.errstate(invalid="ignore"):
+            if abs(abs(np.prod(self.multipliers)) - 1) < 1e-9:
+                return 1.0
+            return float(np.prod(1 - self.products).real)
 
     @property
     def pushes(self) -> np.ndarray:

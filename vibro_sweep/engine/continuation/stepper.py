@@ -162,12 +162,12 @@ def take_steps(f, c, path, place, row, b):
             continue
         touching = touches(path, c, a, place)
         remember(path, a, length)
+        if touching:
+            return TOUCH
         if left or bulges(path, c, a, place):  # it may leave and come back, and if not it goes on from here
             return LEFT
         if happens(c, a, place):
             return EVENT
-        if touching:
-            return TOUCH
         if counts[0] + counts[1] >= EARLY and comes_back(c, a, path.first, length):
             return CLOSED
         keep(place, b, f.numbers[OMEGA], path.record, counts[1])

@@ -1,0 +1,134 @@
+"""Stops that differ, or are compliant: where branches end, what begins at special points, and wide bounds."""
+
+import numpy as np
+import pytest
+from support.compliant_branches import drawn_case, follow
+from support.random_curves import steps_of
+
+import vibro_sweep as vs
+
+NAMES = ("b", "omega")
+
+
+def one_mass(**numbers) -> vs.Oscillator:
+    known = {"k": 1, "zeta": 0.05, "F": 1.0, "omega": 0.9, "b": 1, "tau": 0.0}
+    return vs.Oscillator.named("one_mass", **(known | numbers))
+
+
+def one_stop() -> vs.Oscillator:
+    return one_mass(F=0.5, omega=0.8, stops="right", k_stop=29)
+
+
+@pytest.fixture(scope="module")
+def soft_branch():
+    return vs.continue_orbit(vs.periodic_orbit(one_stop(), itinerary="R"), "omega", (0.3, 3))
+
+
+LAWS = [
+    {"k_stop": 50, "k_stop_left": 51},
+    {"k_stop": 50, "k_stop_left": 100},
+    {"k_stop": 50, "c_stop": 1, "c_stop_left": 2},
+    {"k_stop": 50, "k_stop_left": 80, "c_stop": 1, "release": "force"},
+]
+
+
+@pytest.mark.parametrize("law", LAWS, ids=str)
+def test_two_contacts_that_differ_vanish_together_where_the_free_motion_grazes(law):
+    system = one_mass(**law)
+    b = vs.grazing(system).b
+    free = vs.continue_orbit(vs.periodic_orbit(system.replace(b=1.1 * b), itinerary=""), "b", (0.9 * b, 1.2 * b))
+    (born,) = vs.switch(free.begins)
+    assert sorted(born.itinerary) == ["L", "R"] and born.ok
+    end = vs.continue_orbit(born, "b", (0.9 * b, 1.2 * b)).ends
+    assert end.type == "graze" and end.kind == "persistence"
+    assert end.parameters["b"] == pytest.approx(b, abs=5e-15 * b)
+    assert [again.itinerary for again in vs.switch(end)] == [""]
+
+
+def test_at_the_graze_of_the_free_motion_orbits_that_hit_one_rigid_stop_or_both_begin():
+    """As they are found by themselves, with stops that differ."""
+    system = one_mass(R=0.8, R_left=0.6)
+    b = vs.grazing(system).b
+    free = vs.continue_orbit(vs.periodic_orbit(system.replace(b=1.1 * b), itinerary=""), "b", (0.9 * b, 1.2 * b))
+    born = vs.switch(free.begins)
+    assert [one.itinerary for one in born] == ["LR", "R", "L"]
+    for one in born:
+        known = vs.periodic_orbit(one.system, itinerary=one.itinerary)
+        assert known.ok and np.abs(known.state - one.state).max() < 1e-9
+
+
+def test_windows_of_stops_that_differ_end_where_the_free_motion_grazes():
+    system = one_mass(k_stop=50, k_stop_left=51)
+    b = vs.grazing(system).b
+    found = vs.windows(vs.sweep(system, {"b": b * np.linspace(0.7, 1.3, 25)}, transient=300, record=32))
+    ends = [(one.itinerary, one.lower.type, one.upper.type) for one in found]
+    assert ends == [("LR", "boundary", "graze"), ("", "graze", "boundary")]
+
+
+def test_curves_of_doubled_orbits_with_contacts_begin_at_a_degenerate_flip(soft_branch):
+    """A flip, and the fold that begins there: its orbits of two periods have a multiplier 1, near that point."""
+    flip = next(one for one in soft_branch.special if one.type == "flip")
+    curve = vs.bifurcation_curve(flip, ("omega", "b"), ((0.3, 3), (0.1, 2)))
+    point = min((one for one in curve.special if one.type == "degenerate_flip"), key=lambda one: -one.parameters["b"])
+    begun = {one.type: one for one in vs.switch(point)}
+    assert set(begun) == {"flip", "fold"}
+    fold = begun["fold"]
+    assert fold.orbit.period == 2 and np.abs(fold.multipliers - 1).min() < 1e-9
+    assert all(abs(fold.parameters[name] - value) < 0.02 for name, value in point.parameters.items())
+
+
+def test_a_curve_keeps_within_its_bounds_where_a_preload_vanishes(soft_branch, tmp_path):
+    fold = next(one for one in soft_branch.special if one.type == "fold")
+    curve = vs.bifurcation_curve(fold, ("omega", "preload"), ((0.3, 3), (-1, 1)))
+    assert curve.points.preload.values.min() == 0.0
+    curve.save(tmp_path / "curve.h5")
+    assert vs.load(tmp_path / "curve.h5").points.equals(curve.points)
+
+
+@pytest.mark.parametrize("bounds", [(20, 3e8), (1, 1e9)])
+def test_a_branch_goes_from_soft_to_rigid_within_wide_bounds(bounds):
+    branch = vs.continue_orbit(vs.periodic_orbit(one_stop(), itinerary="R"), "k_stop", bounds)
+    assert branch.status == "ok"
+    assert [one.parameters["k_stop"] for one in (branch.begins, branch.ends)] == list(bounds)
+
+
+def test_bounds_that_reach_to_a_stop_without_stiffness_say_how_the_branch_ends():
+    branch = vs.continue_orbit(vs.periodic_orbit(one_stop(), itinerary="R"), "k_stop", (0, 100))
+    assert branch.ends.type == "boundary" and branch.begins.parameters["k_stop"] < 1e-4
+
+
+@pytest.mark.parametrize("itinerary", ["R", "LLRR"])
+def test_orbits_that_are_not_there_have_a_status_where_one_stop_is_rigid(itinerary):
+    orbit = vs.periodic_orbit(one_mass(omega=0.9, b=0.35, k_stop=50, R_left=0.6), itinerary=itinerary)
+    assert orbit.status in ("inadmissible", "not_converged")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed, expected", [(1083, "resonant_graze"), (136, "fold_graze")])
+def test_a_curve_of_folds_meets_that_of_grazes_at_one_point(seed, expected):
+    """Whatever the length of the steps; of the first seed also where the curve of grazes has it."""
+    case = drawn_case(seed)
+    branch = follow(case)
+    graze = next(one for one in branch.special if one.type == "graze" and one.impact is not None)
+    folds = [one for one in branch.special if one.type == "fold"]
+    fold = min(folds, key=lambda one: abs(one.parameters["b"] - graze.parameters["b"]))
+    values = fold.parameters["b"], case.orbit.system.numbers["omega"]
+    bounds = [(value - by * abs(value), value + by * abs(value)) for value, by in zip(values, (0.1, 0.05), strict=True)]
+    known = np.array(
+        [list(one.parameters.values()) for one in points(vs.bifurcation_curve(graze, NAMES, bounds), expected)]
+    )
+    first = None
+    for factor in (0.5, 1.0, 2.0):
+        with steps_of(factor):
+            curve = vs.bifurcation_curve(fold, NAMES, bounds)
+        (found,) = [one for one in points(curve, expected) if one.impact is not None]
+        value = np.array(list(found.parameters.values()))
+        first = value if first is None else first
+        assert found.error < 1e-11
+        assert np.abs(value - first).max() < 1e-11
+        if seed == 1083:
+            assert np.abs(known - value).max(axis=1).min() < 1e-11
+
+
+def points(curve, expected: str):
+    return [one for one in curve.special if one.type == expected]
