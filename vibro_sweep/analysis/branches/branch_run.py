@@ -14,7 +14,7 @@ from vibro_sweep.analysis.branches.looking import hidden_between
 from vibro_sweep.analysis.branches.own_birth import before_birth, lands_on_birth, own_birth
 from vibro_sweep.analysis.branches.passed_births import before_passed, how_many_on, passed
 from vibro_sweep.analysis.branches.permanent_contact import permanent_contact
-from vibro_sweep.analysis.branches.special import TOUCHING, SpecialPoint, graze_at, shallow, vanishing
+from vibro_sweep.analysis.branches.special import TOUCHING, SpecialPoint, graze_at, shallow, touched_by, vanishing
 from vibro_sweep.analysis.branches.split_contacts import joined_contacts
 from vibro_sweep.analysis.continuation.events import Event, LocatedEvent
 from vibro_sweep.analysis.continuation.point import Point, along
@@ -34,7 +34,6 @@ OF_STABLE = 4e-3  # the same of an orbit that was not just born
 MOST_POINTS = 20_000
 BEFORE = 1e-8  # share of the way to a graze
 ABOVE_ROUNDING = 1e-13  # length of a step, nearer than which to a graze multipliers have any sign
-TOGETHER = 1e-5  # in phase: a turning point that is nearer to a contact without depth is its own
 DIVISIONS = 60  # of a step in which more happens than its tests tell, in all
 
 
@@ -307,17 +306,6 @@ class BranchRun:
             "graze", point, error, multipliers, stop=side, kind=graze.kind, impact=impact,
             direction=1 if graze.distance_slope > 0 else -1,
         )  # fmt: skip
-
-
-def touched_by(solution: Solution) -> int | None:
-    """The contact without depth at which the turning point nearest to its stop lies; None where it lies elsewhere."""
-    gone = shallow(solution)
-    distance, time, _ = solution.nearest
-    if not np.any(gone) or not math.isfinite(distance):
-        return int(np.argmax(gone)) if np.any(gone) else None
-    apart = np.abs((solution.times - time + solution.P / 2) % solution.P - solution.P / 2)
-    index = int(np.argmin(np.where(gone, apart, np.inf)))
-    return index if apart[index] * solution.family.linear.omega < TOGETHER else None
 
 
 def turns_at(curve: SolutionCurve, event: Event) -> bool:

@@ -186,19 +186,19 @@ def _beyond_extremum(curve: SolutionCurve, test: Test, a: Point, b: Point, tripl
 
 
 def extremum(before: float, behind: float, x: float, y: float, z: float) -> float | None:
-    """The place where the parabola through three values is nearest to zero, from the middle one; None where it comes no
-    nearer than they by a quarter, or further on, and the middle one is not much nearer than the others (`dips` of
-    engine/continuation/branch_tests.py)."""
+    """The place where the parabola through three values is nearest to zero, from the middle one; None where a number
+    with these values hardly vanishes twice near that (`dips` of engine/continuation/branch_tests.py)."""
     if y < 0:
         x, y, z = -x, -y, -z
     if not (0 < y <= x and 0 < z and math.isfinite(x + z) and before > 0 < behind):
         return None
     left, right = (y - x) / before, (z - y) / behind
     slope, curve = (left * behind + right * before) / (before + behind), (right - left) / (before + behind)
-    if z < y and not -slope < 2 * curve * behind:
-        return None
-    deep = slope * slope > 4 * curve * (y - 0.75 * min(y, z))
-    return -slope / (2 * curve) if deep or min(x, z) > FARTHER * y else None
+    if z < y:
+        may_vanish = -slope < 2 * curve * behind and slope * slope > 4 * curve * y
+    else:
+        may_vanish = slope * slope > curve * y or min(x, z) > FARTHER * y
+    return -slope / (2 * curve) if may_vanish else None
 
 
 def _apart(at: float, seen: tuple[float, float, float]) -> float:

@@ -119,19 +119,19 @@ def crosses_over(c, a, b):
 @small
 def dips(x, y, z, before, behind):
     """Whether a number with these values at three points, at the distances `before` and `behind` from the middle one,
-    may vanish twice near the middle one, or between it and the last: the parabola has an extremum there that is nearer
-    to zero than all three by a quarter or more, or steps are too long for it to tell: the outer points are farther from
-    zero by FARTHER."""
+    may vanish twice near the middle one: the parabola has an extremum nearer to zero by a quarter or more, or steps are
+    too long for it to tell: the outer points are farther from zero by FARTHER. Or, where the last is nearest to zero,
+    between the middle one and that: the parabola does so."""
     if y < 0.0:
         x, y, z = -x, -y, -z
     if not (y <= x and 0.0 < z and x + z < np.inf):
         return False
     left, right = (y - x) / before, (z - y) / behind
     slope, curve = left * behind + right * before, right - left  # both times the distance of the outer points
-    if z < y and not -slope < 2.0 * curve * behind:  # it lies further on
-        return False
-    deep = slope * slope > 4.0 * curve * (before + behind) * (y - 0.75 * min(y, z))
-    return deep or min(x, z) > FARTHER * y
+    depth = slope * slope / (before + behind)
+    if z < y:
+        return -slope < 2.0 * curve * behind and depth > 4.0 * curve * y
+    return depth > curve * y or min(x, z) > FARTHER * y
 
 
 @small
