@@ -16,9 +16,9 @@ from vibro_sweep.analysis.branches.branch_points import dataset, dataset_from_fi
 from vibro_sweep.analysis.branches.branch_start import NoStartError, changes_rests, start_of_run
 from vibro_sweep.analysis.branches.compiled_stepper import row_of
 from vibro_sweep.analysis.branches.free_run import run_from
-from vibro_sweep.analysis.branches.sizes import in_range
 from vibro_sweep.analysis.branches.special import SpecialPoint, table_of
 from vibro_sweep.analysis.branches.sticking import sticking_onset
+from vibro_sweep.analysis.continuation.allowed_range import in_range
 from vibro_sweep.analysis.continuation.recorded import Rows, both_directions
 from vibro_sweep.analysis.periodic.one_thread import one_thread
 from vibro_sweep.analysis.periodic.orbit_portrait import portrait

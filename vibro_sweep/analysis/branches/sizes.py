@@ -1,11 +1,10 @@
-"""How large a change of a parameter is, in parts of what changes the oscillator as a whole, in any units; its range."""
+"""How large a change of a parameter is, in parts of what changes the oscillator as a whole, in any units."""
 
 import math
 
 import numpy as np
 
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.model.linear import family_of
 
 LEAST = 1e-3  # of what changes the oscillator as a whole: parameters nearer to 0 are as large
 
@@ -39,24 +38,3 @@ def least_size(solution: Solution, name: str) -> float:
 def sizes_of(solution: Solution, names) -> np.ndarray:
     """`size_of` each of several parameters."""
     return np.array([size_of(solution, name) for name in names])
-
-
-def in_range(system, name: str, bound: float) -> float:
-    """`bound`, or the last value before it that the system accepts."""
-
-    def accepted(value: float) -> bool:
-        try:
-            system.replace(**{name: value})
-        except ValueError:
-            return False
-        return True
-
-    if accepted(bound):
-        return bound
-    inside = family_of(system).numbers[name]
-    if bound < 0 < inside and accepted(0.0):
-        return 0.0
-    outside = bound
-    while (middle := (inside + outside) / 2) not in (inside, outside):
-        inside, outside = (middle, outside) if accepted(middle) else (inside, middle)
-    return inside

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.sizes import in_range
 from vibro_sweep.analysis.branches.special import SpecialPoint, table_of
+from vibro_sweep.analysis.continuation.allowed_range import in_range
 from vibro_sweep.analysis.continuation.chatter import written_out
 from vibro_sweep.analysis.continuation.first_point import converge, first_place, guess_of
 from vibro_sweep.analysis.continuation.recorded import Rows, both_directions
