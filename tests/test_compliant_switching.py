@@ -65,16 +65,22 @@ def test_windows_of_stops_that_differ_end_where_the_free_motion_grazes():
     assert ends == [("LR", "boundary", "graze"), ("", "graze", "boundary")]
 
 
-def test_curves_of_doubled_orbits_with_contacts_begin_at_a_degenerate_flip(soft_branch):
-    """A flip, and the fold that begins there: its orbits of two periods have a multiplier 1, near that point."""
-    flip = next(one for one in soft_branch.special if one.type == "flip")
-    curve = vs.bifurcation_curve(flip, ("omega", "b"), ((0.3, 3), (0.1, 2)))
-    point = min((one for one in curve.special if one.type == "degenerate_flip"), key=lambda one: -one.parameters["b"])
-    begun = {one.type: one for one in vs.switch(point)}
-    assert set(begun) == {"flip", "fold"}
-    fold = begun["fold"]
-    assert fold.orbit.period == 2 and np.abs(fold.multipliers - 1).min() < 1e-9
-    assert all(abs(fold.parameters[name] - value) < 0.02 for name, value in point.parameters.items())
+@pytest.mark.parametrize("flips, other, bounds, count", [([0, 1], "b", (0.1, 2), 4), ([1], "k_stop", (5, 2000), 1)])
+def test_curves_of_doubled_orbits_with_contacts_begin_at_a_degenerate_flip(soft_branch, flips, other, bounds, count):
+    """A flip, and the fold that begins there: its orbits of two periods have a multiplier 1, and it leads back."""
+    along, known = ("omega", other), [one for one in soft_branch.special if one.type == "flip"]
+    box, found = ((0.3, 3), bounds), []
+    for flip in (known[i] for i in flips):
+        for point in vs.bifurcation_curve(flip, along, box).special:
+            if point.type == "degenerate_flip":
+                found.append((point, {one.type: one for one in vs.switch(point)}))
+    assert len(found) == count
+    for point, begun in found:
+        assert set(begun) == {"flip", "fold"}
+        fold = begun["fold"]
+        assert fold.orbit.period == 2 and np.abs(fold.multipliers - 1).min() < 1e-9
+        ends = [one.parameters for one in vs.bifurcation_curve(fold, along, box).special if one.type == point.type]
+        assert any(one == pytest.approx(point.parameters, rel=1e-8) for one in ends)
 
 
 def test_a_curve_keeps_within_its_bounds_where_a_preload_vanishes(soft_branch, tmp_path):
@@ -128,6 +134,19 @@ def test_a_curve_of_folds_meets_that_of_grazes_at_one_point(seed, expected):
         assert np.abs(value - first).max() < 1e-11
         if seed == 1083:
             assert np.abs(known - value).max(axis=1).min() < 1e-11
+
+
+@pytest.mark.slow
+def test_where_a_contact_vanishes_on_a_curve_the_others_keep_their_speeds():
+    """Seed 1028, far from the start of the curve: they had those of other units, and `switch` raised LinAlgError."""
+    flip = next(one for one in follow(drawn_case(1028)).special if one.type == "flip")
+    values = flip.parameters["b"], flip.orbit.system.omega
+    (point,) = points(vs.bifurcation_curve(flip, NAMES, [(0.7 * value, 1.3 * value) for value in values]), "flip_graze")
+    contacts = point.orbit.contacts
+    whole = point.orbit._solution
+    order = np.argsort(whole.times % whole.P)
+    assert whole.pushes[order] == pytest.approx(np.abs(contacts["v_touch"][np.argsort(contacts["t_touch"])]), abs=1e-12)
+    assert {one.type for one in vs.switch(point)} == {"flip", "graze"}
 
 
 def points(curve, expected: str):

@@ -55,6 +55,17 @@ def test_the_same_windows_of_sweeps_with_compliant_stops(seeds, capsys):
 
 
 @pytest.mark.slow
+def test_two_orbits_with_one_itinerary_and_the_same_bounds_have_two_windows(tmp_path):
+    """Seed 102: one was taken for the other, and its orbits for some that have not settled."""
+    rng = np.random.default_rng([102, 1])
+    _, system = window_search.drawn(102, True, rng)
+    _, windows, bounds = window_search.swept(system, "constant3", [-0.2, -0.1, 0.0, 0.1, 0.2], 0, tmp_path)
+    assert [(one.itinerary, one.period, (one.lo, one.hi)) for one in windows] == 2 * [("LR", 1, bounds)]
+    assert [one.points for one in windows] == [windows.window.size - windows[1].points, windows[1].points]
+    assert np.abs(windows[0].orbit.state - windows[1].orbit.state).max() > 0.1
+
+
+@pytest.mark.slow
 def test_a_window_from_its_ends(few):  # noqa: F811
     """Also beside a fold or pitchfork: the run began on their other side, and the window was an unstable stretch."""
     windows = vs.windows(few)

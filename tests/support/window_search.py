@@ -69,8 +69,9 @@ def off_and_largest(orbit) -> tuple[float, float]:
     def flown(state):
         return vs.simulate(orbit.system, state, orbit.period).section[-1]
 
-    ends = [[flown(orbit.state + sign * BESIDE * one) for sign in (1, -1)] for one in np.eye(len(orbit.state))]
-    columns = [(there - back) / (2 * BESIDE) for there, back in ends]
+    step = min(BESIDE, max(orbit.stop_distance / 10, 1e-12))  # that touches the stop at no other place
+    ends = [[flown(orbit.state + sign * step * one) for sign in (1, -1)] for one in np.eye(len(orbit.state))]
+    columns = [(there - back) / (2 * step) for there, back in ends]
     size = np.abs(orbit.state).max()
     return float(np.abs(flown(orbit.state) - orbit.state).max() / size), float(
         np.abs(np.linalg.eigvals(np.array(columns).T)).max()

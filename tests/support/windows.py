@@ -32,7 +32,8 @@ def check_end(window, special, outwards: int) -> str | None:
     if special.type == "boundary":
         return None
     end = special.parameters[window.parameter]
-    step = min(BESIDE * max(1.0, abs(end)), 1e-3 * (window.hi - window.lo))
+    beside = BESIDE * max(1.0, abs(end)) + (2 * special.error if special.type == "graze" else 0.0)
+    step = min(beside, 1e-3 * (window.hi - window.lo))
     inside, outside = (
         special.orbit.system.replace(**{window.parameter: end + d * step}) for d in (-outwards, outwards)
     )
@@ -70,10 +71,13 @@ def _distance(a, b) -> float:
 def _near(window, special, step: float):
     """The orbit at an end; the one `step` beside it, roughly, where orbits move like the square root: at a fold, and
     where a contact begins smoothly, or becomes two."""
-    arrays, (point, beside) = window._arrays, (0, 1) if special is window.lower else (-1, -2)
+    arrays, point = window._arrays, 0 if special is window.lower else -1
+    distance = np.abs(arrays["value"] - arrays["value"][point])
+    (farther,) = np.nonzero(distance > step)  # points lie close together where the branch is about to turn
+    beside = farther[point]
     compliant = special.orbit.system.linear.compliant
     root = special.type == "fold" or (special.type in ("graze", "split") and compliant)
-    share = np.sqrt(step / abs(arrays["value"][beside] - arrays["value"][point])) if root else 0.0
+    share = np.sqrt(step / distance[beside]) if root else 0.0
     parts = [
         (1 - share) * arrays[name][point] + share * arrays[name][beside]
         for name in ("impact_t", "impact_v", "impact_t_off")

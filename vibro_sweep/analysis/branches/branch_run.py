@@ -14,7 +14,7 @@ from vibro_sweep.analysis.branches.looking import hidden_between
 from vibro_sweep.analysis.branches.own_birth import before_birth, lands_on_birth, own_birth
 from vibro_sweep.analysis.branches.passed_births import before_passed, how_many_on, passed
 from vibro_sweep.analysis.branches.permanent_contact import permanent_contact
-from vibro_sweep.analysis.branches.special import TOUCHING, SpecialPoint, graze_at, shallow, touched_by, vanishing
+from vibro_sweep.analysis.branches.special import TOUCHING, SpecialPoint, graze_at, shallow, vanishing
 from vibro_sweep.analysis.branches.split_contacts import joined_contacts
 from vibro_sweep.analysis.continuation.events import Event, LocatedEvent
 from vibro_sweep.analysis.continuation.point import Point, along
@@ -285,8 +285,8 @@ class BranchRun:
         if event.type != "graze":
             return self._at(event.type, point, error)
         index = event.impact
-        if index is None:  # behind a contact that vanishes the motion passes the stop, too
-            index = touched_by(point.solution)
+        if index is None and np.any(gone := shallow(point.solution)):  # behind it the motion passes the stop, too
+            index = int(np.argmax(gone))
         if index is not None:  # of those that vanish at once the first
             first = orbit_of(None, point.solution)._canonical_frame[0]
             index = min(vanishing(point.solution, index).tolist(), key=lambda i: (i - first) % point.solution.K)

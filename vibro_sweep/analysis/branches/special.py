@@ -91,7 +91,6 @@ class Graze:
 
 AT_ONCE = 1e-11  # the same, of impacts that vanish with another one, for all that rounding does
 TOUCHING = 2.0**-48  # of the gap's size, that counts as no distance from a stop
-TOGETHER = 1e-5  # in phase: a turning point that is nearer to a contact without depth is its own
 
 
 def vanishing(solution: Solution, impact: int) -> np.ndarray:
@@ -109,16 +108,6 @@ def shallow(solution: Solution) -> np.ndarray:
     smooth = [is_smooth(solution.family.linear, side) for side in solution.sides]
     most = 2 * np.abs(solution.motion[:, 1]) * TOUCHING * solution.size_of_gap
     return np.array(smooth, bool) & (solution.pushes**2 <= most)
-
-
-def touched_by(solution: Solution) -> int | None:
-    """The contact without depth at which the turning point nearest to its stop lies, where there is one."""
-    gone, apart = shallow(solution), np.zeros(solution.K)
-    distance, time, _ = solution.nearest
-    if math.isfinite(distance):
-        apart = np.abs((solution.times - time + solution.P / 2) % solution.P - solution.P / 2)
-    own = gone & (solution.family.linear.omega * apart < TOGETHER)
-    return int(np.argmax(own)) if np.any(own) else None
 
 
 def graze_at(solution: Solution, name: str, impact: int | None, touching: Solution | None = None) -> Graze:

@@ -29,6 +29,7 @@ from vibro_sweep.analysis.branches.criticality import cubic_terms
 from vibro_sweep.analysis.branches.sizes import size_of, sizes_of
 from vibro_sweep.analysis.branches.special import SpecialPoint, bare, inserted
 from vibro_sweep.analysis.continuation.first_point import converge, first_place, guess_of
+from vibro_sweep.analysis.continuation.point import Point
 from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve, branch_through
 from vibro_sweep.analysis.continuation.starting_orbit import Start
 from vibro_sweep.analysis.curves.curve_run import CurvePoint
@@ -43,6 +44,8 @@ from vibro_sweep.model.bifurcations import CODIMENSION_TWO, name_of
 AMPLITUDES = (0.01, 0.005, 0.0025, 0.00125, 0.02, 0.04)  # in the units of a curve, in the order in which they are tried
 REACH = 0.2  # of the parameters around the point, relative
 FARTHEST = 0.02  # relative distance of the point that is found, in both parameters
+SECANTS = 8  # steps towards the fold of a doubled orbit
+NEARLY = 0.01  # the last of them, of the square of the amplitude
 ALIKE = 0.3  # relative difference from what the normal form says
 BEGINS = {one.name: one.begins for one in CODIMENSION_TWO}
 
@@ -116,13 +119,45 @@ def entry(special: CurvePoint, name: str, parent: Start, count: int, amplitude: 
         mu = parent.solution.multipliers
         pair = mu[np.argmin(np.where(mu.imag > 1e-6, np.abs(np.abs(mu) - 1), np.inf))]
         return Entry(Start(name, child, theta=abs(float(np.angle(pair**2)))), change, None)
-    across = int(np.argmin(np.abs(place.tangent_p[:2])))
-    curve = branch_through(child, names[across], size_of(child, names[across]))
-    found = with_amplitude(curve, child, change)
     if name == "fold":
+        found = _turning(curve, place, change, amplitude)
         return found and Entry(Start(name, found), change, None)
+    found = _doubled(curve, place, change)
     theta = found and _angle_near_one(found)
     return Entry(Start(name, found, theta=theta), change, None) if theta else None
+
+
+def _doubled(curve: SolutionCurve, place: Point, change: np.ndarray, distance: float = 0.0) -> Solution | None:
+    """The doubled orbit with the amplitude `change`, at the flip `distance` along its curve from `place`."""
+    flip = curve.correct(curve.moved(place, distance), place.direction) if distance else place
+    if flip is None:
+        return None
+    child = flip.solution.repeated(2)
+    child = replace(child, u=child.u + change)
+    across = curve.names[int(np.argmin(np.abs(place.tangent_p[:2])))]
+    return with_amplitude(branch_through(child, across, size_of(child, across)), child, change)
+
+
+def _turning(curve: SolutionCurve, place: Point, change: np.ndarray, amplitude: float) -> Solution | None:
+    """The doubled orbit with this amplitude that has a multiplier 1.
+
+    A multiplier is 1 + 2 r^2 (k d + 2 c r^2) at the amplitude r and the distance d along the flip curve: hardly more
+    than 1 at all of them, so that Newton's method for a fold goes astray from where d is not nearly right.
+    """
+    there, values, found = 0.0, [0.0, 0.0], _doubled(curve, place, change)
+    step = amplitude**2
+    for _ in range(SECANTS):
+        if found is None:
+            return None
+        mu = found.multipliers
+        values = [values[1], float(mu[np.argmin(np.abs(mu - 1))].real - 1)]
+        if values[0]:
+            step *= values[1] / (values[0] - values[1])
+        if abs(step) < NEARLY * amplitude**2:
+            return found
+        there += step
+        found = _doubled(curve, place, change, there)
+    return None
 
 
 def _angle_near_one(solution: Solution) -> float | None:

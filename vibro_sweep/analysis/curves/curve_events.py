@@ -221,7 +221,12 @@ def on_grazes(curve: SolutionCurve, impact: int, aim: Place, lengths) -> Located
     for length in lengths if first is not None else ():
         found = event_near(other, first, length, types)
         if found is not None:
+            units = other.state_units / curve.state_units
             aim.x[:], aim.p[:2] = found.place.x, found.place.p[:2]
+            aim.x[:, : curve.n] *= units
+            aim.jumps[~curve.problem.rests] *= units[-1]
+            aim.tests[TEST.residual] = found.place.tests[TEST.residual]
+            aim.tests[TEST.stop_distance] = found.place.tests[TEST.stop_distance] * units[0]
             return found._replace(place=aim)
     return None
 

@@ -120,12 +120,14 @@ class WindowSearch:
         return Job(system, row.states[i, j], int(row.period[i, j]), row.parameter, row.bounds)
 
     def _add(self, found: RowWindow) -> None:
-        """Keep a window, unless it is known."""
-        near = SAME * np.ptp(self.rows[found.row].bounds)
+        """Keep a window, unless it is known: another orbit may have the same itinerary and the same bounds."""
+        row, middle = self.rows[found.row], len(found.arrays["value"]) // 2
+        value, state = found.arrays["value"][[middle]], found.arrays["state"][[middle], None]
         if not any(
             known.row == found.row
             and _same(known.arrays, found.arrays)
-            and np.allclose(known.ends, found.ends, 0, near)
+            and np.allclose(known.ends, found.ends, 0, SAME * np.ptp(row.bounds))
+            and members(known.arrays, row.system, row.parameter, value, state)[0, 0]
             for known in self.found
         ):
             self.found.append(found)
