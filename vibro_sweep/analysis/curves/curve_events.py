@@ -36,6 +36,8 @@ ROUNDING = 1e-10  # of the bounds: points nearer to each other are one
 PIECE = 0.02  # of the distance between two events
 VANISHED = 1e-12  # of a test: more than rounding leaves of it at a zero
 SLOW = 1e-6  # in units of the curve: an impulse next to which rounding of the multipliers is too large
+SHORT = 1e-6  # length, in phase, of a contact next to which rounding of a critical orbit is too large
+BEYOND = 0.5  # of a step: so far beyond its ends, on the straight line, it may reach where it turns
 SETTLED = 1e-10  # Newton's last change
 REACH = (0.25, 0.5, 1.0, 2.0, 4.0)
 SAME = 1e-3  # of a step: a stop_distance that vanishes with an impact does so like the square of its speed
@@ -76,14 +78,14 @@ def found_between(curve: SolutionCurve, a: Place, b: Place) -> list[LocatedEvent
     the pieces of the step beside each event are looked at as well.
     """
     found = without_echoes(curve, _located(curve, a, b))
-    if len(found) < 2 and not any(one.event.impact is not None for one in found):
+    gone = [one.event.impact for one in found if one.event.impact is not None]
+    if (len(found) < 2 and not gone) or any(is_divided(curve, i) for i in gone):  # tests have no poles there
         return found
     known = {0.0: a, 1.0: b} | {one.share: one.place for one in found}
     shares = np.unique(list(known))
     apart = PIECE * np.diff(shares).min()
     beside_each = [(share, sign * apart) for share in shares[1:-1].tolist() for sign in (-1, 1)]
     cuts = [0.0, *(share + apart for share, apart in beside_each), 1.0]
-    gone = [one.event.impact for one in found if one.event.impact is not None]
     places = [a, *(aside(curve, a, b, known[share], apart, gone) for share, apart in beside_each), b]
     if any(place is None for place in places):
         return found
@@ -111,14 +113,29 @@ def found_to_edge(curve: SolutionCurve, a: Place, b: Place) -> list[LocatedEvent
     end = min(ends, key=lambda one: one.share)
     share = (1 - PIECE) * end.share
     gone = [] if end.event.impact is None else [end.event.impact]
-    before = aside(curve, a, b, end.place, share - end.share, gone)
+    if any(is_divided(curve, i) for i in gone):
+        guess = curve.between(a, end.place, 1 - PIECE)
+        before = curve.correct(guess, curve.unit_row(curve.difference(a, end.place)))
+    else:
+        before = aside(curve, a, b, end.place, share - end.share, gone)
     if before is None:
         return [end]
     return [*(one._replace(share=one.share * share) for one in found_between(curve, a, before)), end]
 
 
 def _located(curve: SolutionCurve, a: Place, b: Place) -> list[LocatedEvent]:
-    return [found for event in events_between(curve, a, b) if (found := locate(curve, event, a, b)) is not None]
+    found: list[LocatedEvent] = []
+    for event in sorted(events_between(curve, a, b), key=lambda event: event.touches):
+        flight = event.touches and event.type not in ENDS_OF_CONTACTS
+        if not (flight and any(_passes_behind(curve, one) for one in found)):
+            found += [one for one in [locate(curve, event, a, b)] if one is not None]
+    return found
+
+
+def _passes_behind(curve: SolutionCurve, one: LocatedEvent) -> bool:
+    """Whether this is a contact that vanishes, behind which the motion passes the stop, and no other flight does."""
+    impact = one.event.impact
+    return impact is not None and is_divided(curve, impact) and one.place.tests[TEST.stop_distance] > 0
 
 
 def without_echoes(curve: SolutionCurve, found: list[LocatedEvent]) -> list[LocatedEvent]:
@@ -207,7 +224,9 @@ def _along_grazes(curve: SolutionCurve, event: Event, a: Place, b: Place) -> Loc
     if found is None or found.event.type != event.type:
         return None
     share = float(curve.unit_row(curve.difference(a, b)) @ curve.difference(a, found.place)) / length
-    return LocatedEvent(event, share, found.place, found.error) if 0.0 <= share <= 1.0 else None
+    if abs(share - 0.5) > 0.5 + BEYOND:
+        return None
+    return LocatedEvent(event, min(max(share, 0.0), 1.0), found.place, found.error)
 
 
 def on_grazes(curve: SolutionCurve, impact: int, aim: Place, lengths) -> LocatedEvent | None:
@@ -232,11 +251,13 @@ def on_grazes(curve: SolutionCurve, impact: int, aim: Place, lengths) -> Located
 
 
 def is_sharp(curve: SolutionCurve, event: Event, place: Place) -> bool:
-    """Whether rounding leaves a test its sign: that of multipliers has a pole where another impact vanishes."""
-    impulses = np.abs(place.jumps)
+    """Whether rounding leaves a test its sign: that of multipliers has a pole where another impact vanishes, and all
+    are divided by the length of a contact."""
+    least = np.abs(place.jumps)
     if curve.problem.kind == GRAZE:
-        impulses = np.delete(impulses, curve.problem.index)
-    return event.index != TEST.pair or not np.any(impulses < SLOW)
+        least[curve.problem.index] = np.inf
+    divided = any(is_divided(curve, int(i)) for i in np.flatnonzero(least < SHORT))
+    return not divided and (event.index != TEST.pair or not np.any(least < SLOW))
 
 
 def event_near(curve: SolutionCurve, place: Place, length: float, types) -> LocatedEvent | None:

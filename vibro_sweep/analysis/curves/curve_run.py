@@ -15,6 +15,7 @@ from vibro_sweep.analysis.continuation.secant import root
 from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve, copy
 from vibro_sweep.analysis.curves.curve_events import (
     ENDS_OF_CONTACTS,
+    SHORT,
     beside,
     found_between,
     found_to_edge,
@@ -37,7 +38,6 @@ from vibro_sweep.engine.impulses.flow import steady_motion
 FIRST_STEP = 1e-3
 CLOSE = 1e-6  # distance, in the units of a curve, from the first point where it comes back to it
 MOST_POINTS = 50_000
-SHORT = 1e-6  # length, in phase, of a contact next to which rounding of a critical orbit is too large
 LENGTHS = (1e-4, 1e-3, 1e-2)  # along a curve of grazes, in which the end is looked for there
 NEAR = 1e-2  # of the bounds, within which it lies
 

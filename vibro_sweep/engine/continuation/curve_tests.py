@@ -95,9 +95,9 @@ def examine_curve(f, c, place, b):
         end = place.x[0, n] + math.pi * f.half_turns
         tests[TEST.last], tests[TEST.before] = (end - place.x[K - 1, n]) / reach, (end - place.x[K - 2, n]) / reach
         return True
-    if is_critical(c):
-        examine_null_vectors(f, c, place, b, n)
     grazes = factor_of_grazes(f, c, place)
+    if is_critical(c):
+        examine_null_vectors(f, c, place, b, n, grazes)
     # where nothing jumps at the graze this is the orbit without the contact
     watched = is_watched(f, c, c.index) and corner_of(f, c, c.index) == 0.0
     if c.kind != FOLD and not watched:
@@ -119,9 +119,12 @@ def examine_curve(f, c, place, b):
 
 
 @small
-def examine_null_vectors(f, c, place, b, n):
+def examine_null_vectors(f, c, place, b, n, grazes):
     """Tests for a double mu, and of a fold for a cusp. Without losses multipliers are pairs mu, 1/mu, and mu is double
-    all along the curve."""
+    all along the curve.
+
+    Where a contact has no length s, w is zero but for its own equation: the first has the factor s, the second s^2.
+    """
     K, double, cusp = len(b.events), 0j, 0j
     scale_v, scale_w = keep_null_vectors(place, b, n)
     for i in range(K):
@@ -131,9 +134,9 @@ def examine_null_vectors(f, c, place, b, n):
     for r in range(n):
         double += place.w[K - 1, 2 + r] * place.v[0, r]
     if c.kind != TORUS:
-        place.tests[TEST.double] = double.real if has_losses(f, c) else np.nan
+        place.tests[TEST.double] = double.real / grazes if has_losses(f, c) else np.nan
     if c.kind == FOLD:
-        place.tests[TEST.cusp] = (cusp * scale_v * scale_v * scale_w).real
+        place.tests[TEST.cusp] = (cusp * scale_v * scale_v * scale_w).real / (grazes * grazes)
 
 
 @small
