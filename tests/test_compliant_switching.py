@@ -84,6 +84,48 @@ def test_curves_of_doubled_orbits_with_contacts_begin_at_a_degenerate_flip(soft_
         assert any(one == pytest.approx(point.parameters, rel=1e-8) for one in ends)
 
 
+BOTH = {"k_stop": 30.0, "k_stop_left": 30.0, "c_stop": 1.0, "c_stop_left": 1.0, "preload": 0.1, "preload_left": 0.1}
+
+
+@pytest.mark.parametrize("name", BOTH)
+def test_a_symmetric_orbit_does_not_stay_so_along_a_number_of_one_stop(name):
+    """Its branch said ok of halves of orbits that are not there."""
+    orbit = vs.periodic_orbit(one_mass(b=0.8, tau=0.3, **BOTH), itinerary="LR")
+    assert orbit.symmetric
+    branch = vs.continue_orbit(orbit, name, (0.5 * BOTH[name], 2 * BOTH[name]))
+    points = branch.points.isel(point=[0, -1])
+    for value, x, v in zip(points[name].values, points.x1.values, points.v1.values, strict=True):
+        flown = vs.simulate(orbit.system.replace(**{name: value}), (x, v), 1).section[-1]
+        assert np.abs(flown - (x, v)).max() < 1e-12
+
+
+def test_a_curve_of_grazes_that_leaves_its_bounds_at_no_preload_has_no_point_there():
+    """Its tests are zero there, beyond the bound by rounding: it ended in an error of the preload."""
+    system = one_mass(F=0.5, omega=0.8, stops="right", k_stop=29, preload=0.05)
+    branch = vs.continue_orbit(vs.periodic_orbit(system, itinerary="R"), "b", (0.1, 2))
+    graze = next(one for one in branch.special if one.type == "graze")
+    for most in (0.1, 0.2, 0.5, 1):
+        curve = vs.bifurcation_curve(graze, ("b", "preload"), ((0.1, 3), (0, most)))
+        assert curve.points.preload.values.min() == 0.0
+        assert all(one.type == "boundary" for one in curve.special if abs(one.parameters["preload"]) < 1e-9)
+
+
+def test_a_resonant_graze_whose_test_is_nearly_flat_is_one_point_with_its_error():
+    """Multipliers of 1e-10: rounding changed the sign of the test at up to six places, with errors of 5e-11."""
+    numbers = {"k": 1, "zeta": 0.08655, "F": 1.41046, "omega": 0.49928, "b": 0.16023, "tau": -1.61125}
+    law = {"k_stop": 68.79466, "c_stop": 10.1741, "preload": 0.18724}
+    orbit = vs.periodic_orbit(vs.Oscillator.named("one_mass", stops="right", **numbers, **law), itinerary="RR")
+    graze = next(one for one in vs.continue_orbit(orbit, "preload", (0, 0.57)).special if one.type == "graze")
+    found = []
+    for bounds in (((0.12, 0.4), (30, 200)), ((0.1, 0.5), (20, 300))):
+        curve = vs.bifurcation_curve(graze, ("preload", "k_stop"), bounds, virtual=False)
+        found.append([one for one in points(curve, "resonant_graze") if 0.13 < one.parameters["preload"] < 0.39])
+    assert len(found[0]) == len(found[1]) > 4
+    for one in found[0]:
+        near = min(found[1], key=lambda other: abs(one.parameters["k_stop"] - other.parameters["k_stop"]))
+        assert abs(one.parameters["k_stop"] - near.parameters["k_stop"]) <= one.error + near.error < 0.2
+
+
 def test_a_curve_keeps_within_its_bounds_where_a_preload_vanishes(soft_branch, tmp_path):
     fold = next(one for one in soft_branch.special if one.type == "fold")
     curve = vs.bifurcation_curve(fold, ("omega", "preload"), ((0.3, 3), (-1, 1)))

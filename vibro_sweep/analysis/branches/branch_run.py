@@ -293,11 +293,13 @@ class BranchRun:
         try:
             graze = graze_at(point.solution, self.name, index)
         except np.linalg.LinAlgError:  # a fold of the orbits without the impact as well: no slopes
-            return self._at("failed", point, error)
+            return self._at("failed", point, error or math.nan)
         side = graze.touching.sides[graze.index]
         slope = abs(graze.distance_slope)
         if slope > 0:
             error += float(TOUCHING * point.solution.size_of_gap / slope)
+        elif not error:  # it was not located, and the distance from the stop says nothing
+            error = math.nan
         impact, multipliers = None, None
         if index is not None:
             multipliers = graze.multipliers

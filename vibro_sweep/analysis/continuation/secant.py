@@ -18,6 +18,8 @@ NOISE = 1e-11  # of a secant: nearer to a zero rounding of a test may lie
 COARSE = 1e3  # times both, of orbits of many impacts: their tests round by more, and each point takes long
 STEPS = 4
 BESIDE = (-3e-12, -1e-12, 0.0, 1e-12, 3e-12)  # of a secant, from the zero: so near that only rounding differs
+FARTHER = (ASIDE, 1e-5, 1e-3, 0.1)  # of a secant, from the zero: where its slope is looked at
+ABOVE = 30.0  # times what rounding does: a test that changes by more has a slope
 TIMES = 5.0  # the largest difference between locations
 OF_TESTS = 3.0  # times what rounding of the equations does, where rounding of a test comes to it
 
@@ -110,7 +112,8 @@ class Secant:
 def error_of(
     curve: SolutionCurve, a: Place, b: Place, test: Callable[[Point], float], share: float, point: Point
 ) -> float | None:
-    """The error of the parameters of a zero at a share of the secant; None: there are no points beside it.
+    """The error of the parameters of a zero at a share of the secant; None: there are no points beside it, or the test
+    is rounding all along.
 
     Rounding of the equations moves the line, and rounding of the test moves its zero along the line. The second is seen
     in what points beside it say, which round differently: p - test dp/dtest, without the straight line that a wrong
@@ -120,11 +123,16 @@ def error_of(
     secant.seen[share] = point
     try:
         points = [secant.at(share + step) if step else point for step in BESIDE]
-        far = secant.at(share + (ASIDE if share < 0.5 else -ASIDE), exact=False)
+        tests, p = (np.array([of(one) for one in points]) for of in (test, curve.parameters))
+        middle, scatter, least = BESIDE.index(0.0), 0.0, ABOVE * np.ptp(tests)
+        for distance in FARTHER:
+            far = secant.at(share + (distance if share < 0.5 else -distance), exact=False)
+            if not abs(test(far) - tests[middle]) < least:
+                break
+        else:
+            return None
     except ArithmeticError:
         return None
-    tests, p = (np.array([of(one) for one in points]) for of in (test, curve.parameters))
-    middle, scatter = BESIDE.index(0.0), 0.0
     with np.errstate(all="ignore"):
         rate = (curve.parameters(far) - p[middle]) / np.float64(test(far) - tests[middle])
     if np.isfinite(rate).all():

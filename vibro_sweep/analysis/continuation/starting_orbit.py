@@ -31,4 +31,6 @@ class Start:
 def keeps_symmetry(family: Family, name: str) -> bool:
     """Whether orbits with x(t + P) = -x(t) remain so along this parameter."""
     slope = family.derivative(name)
-    return slope.low == -slope.high and slope.R_low == slope.R_high and not np.any(slope.constant)
+    low = -slope.low, slope.R_low, slope.k_low, slope.c_low, slope.p_low
+    high = slope.high, slope.R_high, slope.k_high, slope.c_high, slope.p_high
+    return low == high and not np.any(slope.constant)

@@ -144,19 +144,20 @@ def _turning(curve: SolutionCurve, place: Point, change: np.ndarray, amplitude: 
     A multiplier is 1 + 2 r^2 (k d + 2 c r^2) at the amplitude r and the distance d along the flip curve: hardly more
     than 1 at all of them, so that Newton's method for a fold goes astray from where d is not nearly right.
     """
-    there, values, found = 0.0, [0.0, 0.0], _doubled(curve, place, change)
-    step = amplitude**2
+    there, step, before = 0.0, amplitude**2, None
     for _ in range(SECANTS):
+        found = _doubled(curve, place, change, there)
         if found is None:
             return None
         mu = found.multipliers
-        values = [values[1], float(mu[np.argmin(np.abs(mu - 1))].real - 1)]
-        if values[0]:
-            step *= values[1] / (values[0] - values[1])
-        if abs(step) < NEARLY * amplitude**2:
-            return found
-        there += step
-        found = _doubled(curve, place, change, there)
+        beyond = float(mu[np.argmin(np.abs(mu - 1))].real - 1)
+        if before is not None:
+            if beyond == before:  # rounding
+                return None
+            step *= beyond / (before - beyond)
+            if abs(step) < NEARLY * amplitude**2:
+                return found
+        before, there = beyond, there + step
     return None
 
 

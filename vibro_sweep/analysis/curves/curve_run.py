@@ -9,7 +9,7 @@ from vibro_sweep.analysis.branches.branch_run import stop_and_impact
 from vibro_sweep.analysis.branches.special import SpecialPoint, bare
 from vibro_sweep.analysis.branches.split_contacts import joined_contacts
 from vibro_sweep.analysis.continuation.chatter import chatter_at, with_impacts, written_out
-from vibro_sweep.analysis.continuation.events import Event
+from vibro_sweep.analysis.continuation.events import Event, LocatedEvent
 from vibro_sweep.analysis.continuation.recorded import Rows, join, rows_of
 from vibro_sweep.analysis.continuation.secant import root
 from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve, copy
@@ -17,10 +17,13 @@ from vibro_sweep.analysis.curves.curve_events import (
     ENDS_OF_CONTACTS,
     SHORT,
     beside,
+    events_between,
     found_between,
     found_to_edge,
     is_divided,
+    locate,
     on_grazes,
+    same,
     without_echoes,
 )
 from vibro_sweep.analysis.curves.ends import End, birth, birth_near, in_full, just_before, strong_resonance
@@ -118,7 +121,7 @@ class CurveRun:
             elif reason in (stepper.EVENT, stepper.CLOSED, stepper.LEFT):
                 if self._ends(a, b, reason != stepper.LEFT):
                     return
-                if not passable(w, b):
+                if not passable(w, b) or self._is_lost(a, b):
                     break
                 if not self._pass(a, b):
                     return
@@ -162,17 +165,20 @@ class CurveRun:
         state = x[:, 0, : w.n] * w.state_units
         self.rows.append(rows_of(w, x, motion, p, tests, omega, w.tau, state))
 
-    def _pass(self, a: Place, b: Place) -> bool:
+    def _pass(self, a: Place, b: Place, leaves: bool = False) -> bool:
         """Record what lies between a and b where the orbit is real, then b. Whether the curve goes on from there.
 
-        A curve without virtual points ends where its orbit stops being real.
+        A curve without virtual points ends where its orbit stops being real. Where it leaves the bounds at b, what lies
+        there, or beyond by rounding, is left out: a number may be at the end of its range.
         """
         w = self.curve
         ends = not (self.virtual or w.is_real(b))
         found = without_echoes(w, (found_to_edge if ends else found_between)(w, a, b))
+        if leaves:
+            found = [one for one in found if not same(w, one, LocatedEvent(one.event, 1.0, b, 0.0))]
         for one in found:
             self._add(one.place)
-            if self._holds(one.event, one.place, *beside(w, a, b, one, found)):
+            if self._holds(one.event, one.place, *beside(w, a, b, one, found)) and not self._is_known(one):
                 self.special.append(self._at(one.event.type, one.place, one.error, one.event))
                 if ends and (one.event.impact is not None or one.event.touches):
                     return False
@@ -183,6 +189,14 @@ class CurveRun:
             return False
         self._add(b)
         return True
+
+    def _is_known(self, one: LocatedEvent) -> bool:
+        """Whether rounding of a test, which changes its sign more than once, does not tell this from a known point."""
+        return one.event.index is not None and any(
+            known.type == one.event.type
+            and np.all(np.abs(one.place.p[:2] - list(known.parameters.values())) <= one.error + known.error)
+            for known in self.special
+        )
 
     def _holds(self, event: Event, place: Place, a: Place, b: Place) -> bool:
         """Whether this is a bifurcation of a motion, real there or at the edge of what is real; no neutral saddle."""
@@ -210,7 +224,7 @@ class CurveRun:
                 self.special.append(self._at("failed", a, np.nan))
             return
         place = min(found, key=lambda one: max((one.p[j] - boundary) * side for j, boundary, side in sides))
-        if not self._ends(a, place, False) and self._pass(a, place):
+        if not self._ends(a, place, False) and self._pass(a, place, leaves=True):
             self.special.append(self._at("boundary", place, 0.0))
 
     def _at_boundary(self, a: Place, b: Place, j: int, boundary: float) -> Place | None:
@@ -271,6 +285,12 @@ class CurveRun:
         self._add_solution(np.append(place.p[:2], a.p[THETA]), place.solution)
         self.special.append(self._at("boundary", place, 0.0, curve=place.curve))
         return True
+
+    def _is_lost(self, a: Place, b: Place) -> bool:
+        """Whether rounding changes the sign of a contact's length between a and b: its graze is not there."""
+        w = self.curve
+        vanish = [one for one in events_between(w, a, b) if one.impact is not None and abs(a.jumps[one.impact]) < SHORT]
+        return any(is_divided(w, one.impact) and locate(w, one, a, b) is None for one in vanish)
 
     def _reach_graze(self, a: Place) -> bool:
         """End at the graze of a contact that is about to vanish beside a: its length has no digits there. False: none

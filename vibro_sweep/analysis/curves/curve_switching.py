@@ -110,8 +110,11 @@ def _smooth(solution: Solution, no_pair: bool) -> list[Start]:
 
 
 def is_singular(solution: Solution, mu: int) -> bool:
-    """Whether mu is a multiplier, also where an impact has no speed."""
-    values = np.linalg.svd(Linearised(solution).closure(mu), compute_uv=False)
+    """Whether mu is a multiplier, also where an impact has no speed; False where all numbers would be."""
+    try:
+        values = np.linalg.svd(Linearised(solution).closure(mu), compute_uv=False)
+    except np.linalg.LinAlgError:
+        return False
     return bool(values[-1] < SINGULAR * values[0])
 
 
