@@ -15,18 +15,14 @@ from vibro_sweep.analysis.continuation.secant import root
 from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve, copy
 from vibro_sweep.analysis.curves.curve_events import (
     ENDS_OF_CONTACTS,
-    SHORT,
     beside,
-    events_between,
     found_between,
     found_to_edge,
-    is_divided,
-    locate,
-    on_grazes,
     same,
     without_echoes,
 )
 from vibro_sweep.analysis.curves.ends import End, birth, birth_near, in_full, just_before, strong_resonance
+from vibro_sweep.analysis.curves.short_contacts import ShortContacts
 from vibro_sweep.analysis.curves.vanishing_preload import without_preload
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit, orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
@@ -41,8 +37,6 @@ from vibro_sweep.engine.impulses.flow import steady_motion
 FIRST_STEP = 1e-3
 CLOSE = 1e-6  # distance, in the units of a curve, from the first point where it comes back to it
 MOST_POINTS = 50_000
-LENGTHS = (1e-4, 1e-3, 1e-2)  # along a curve of grazes, in which the end is looked for there
-NEAR = 1e-2  # of the bounds, within which it lies
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -83,6 +77,7 @@ class CurveRun:
         self.special: list[CurvePoint] = []
         self.rows: list[Rows] = []
         self.closed = False
+        self._short = ShortContacts(curve)
         self._add(self.first)
 
     @property
@@ -121,14 +116,22 @@ class CurveRun:
             elif reason in (stepper.EVENT, stepper.CLOSED, stepper.LEFT):
                 if self._ends(a, b, reason != stepper.LEFT):
                     return
-                if not passable(w, b) or self._is_lost(a, b):
+                if not passable(w, b):
                     break
-                if not self._pass(a, b):
+                if self._short.are_lost(a, b):
+                    beyond = self._over_graze(a)
+                    if beyond is None:
+                        break
+                    copy(beyond, b)
+                elif not self._pass(a, b):
                     return
                 passed += 1
                 copy(b, a)
             elif reason == stepper.FAILED:
-                break
+                beyond = self._over_graze(a)
+                if beyond is None:
+                    break
+                copy(beyond, a)
         end = birth_near(w, a) if w.problem.repeats or w.problem.mirrors else None
         if end is not None:
             self._end(end)
@@ -162,6 +165,7 @@ class CurveRun:
 
     def _record(self, x, motion, p, tests, omega) -> None:
         w = self.curve
+        self._short.keep(x, p)
         state = x[:, 0, : w.n] * w.state_units
         self.rows.append(rows_of(w, x, motion, p, tests, omega, w.tau, state))
 
@@ -286,24 +290,29 @@ class CurveRun:
         self.special.append(self._at("boundary", place, 0.0, curve=place.curve))
         return True
 
-    def _is_lost(self, a: Place, b: Place) -> bool:
-        """Whether rounding changes the sign of a contact's length between a and b: its graze is not there."""
-        w = self.curve
-        vanish = [one for one in events_between(w, a, b) if one.impact is not None and abs(a.jumps[one.impact]) < SHORT]
-        return any(is_divided(w, one.impact) and locate(w, one, a, b) is None for one in vanish)
+    def _over_graze(self, a: Place) -> Place | None:
+        """The curve behind the graze of a contact whose length has no digits at a; the graze is recorded. None: there
+        is none, or the curve ends there."""
+        found = self._short.graze_beside(a)
+        beyond = found and self._short.behind(found.place)
+        if beyond is None or not (self.virtual or self.curve.is_real(beyond)):
+            return None
+        beyond.tests[TEST.length] = a.tests[TEST.length]
+        if self.curve.is_real(a) or self.curve.is_real(beyond):
+            self._add_found(found)
+        self._add(beyond)
+        return beyond
 
     def _reach_graze(self, a: Place) -> bool:
-        """End at the graze of a contact that is about to vanish beside a: its length has no digits there. False: none
-        is."""
-        w = self.curve
-        for i in np.flatnonzero(np.abs(a.jumps) < SHORT):
-            found = on_grazes(w, int(i), a, LENGTHS) if is_divided(w, int(i)) else None
-            if found is not None and np.all(np.abs(found.place.p - a.p)[:2] <= NEAR * np.ptp(w.bounds, axis=1)):
-                self._add(found.place)
-                event = replace(found.event, impact=int(i))
-                self.special.append(self._at(event.type, found.place, found.error, event))
-                return True
-        return False
+        """End at the graze of such a contact. False: none is beside a."""
+        found = self._short.graze_beside(a)
+        if found is not None:
+            self._add_found(found)
+        return found is not None
+
+    def _add_found(self, found: LocatedEvent) -> None:
+        self._add(found.place)
+        self.special.append(self._at(found.event.type, found.place, found.error, found.event))
 
     def _add_solution(self, p: np.ndarray, s: Solution) -> None:
         """Record an orbit that is not of this curve."""

@@ -1,0 +1,63 @@
+"""Contacts of critical orbits that are about to vanish: beside their graze a curve has no digits.
+
+The condition of a critical orbit is divided by the length s of each contact without preload (engine/continuation/
+conditions.py): next to s = 0 it is rounding over s. The graze itself is located along the curve of grazes. Behind it
+the curve goes on from the mirror image of its last place with digits, which is right to s^2.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from vibro_sweep.analysis.continuation.events import LocatedEvent
+from vibro_sweep.analysis.continuation.point import Point
+from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve
+from vibro_sweep.analysis.curves.curve_events import SHORT, is_divided, on_grazes
+from vibro_sweep.engine.continuation.workspace import Place
+
+ACROSS = 1e-5  # length, in phase, of a contact that has digits again
+LENGTHS = (1e-4, 1e-3, 1e-2)  # along a curve of grazes, in which the graze is looked for
+NEAR = 1e-2  # of the bounds, within which it lies
+
+
+class ShortContacts:
+    """The contacts of a curve whose lengths divide its condition, and its last place at which all have digits."""
+
+    def __init__(self, curve: SolutionCurve):
+        self.curve = curve
+        self._divided = [i for i in range(curve.K) if is_divided(curve, i)]
+        self._clear: tuple[np.ndarray, np.ndarray] | None = None
+
+    def keep(self, x: np.ndarray, p: np.ndarray) -> None:
+        """Take note of points (points, K, 2N + 2), (points, 3) of the curve."""
+        clear = np.flatnonzero((np.abs(x[:, self._divided, -1]) > ACROSS).all(axis=1))
+        if len(clear):
+            self._clear = x[clear[-1]].copy(), p[clear[-1]].copy()
+
+    def are_lost(self, a: Place, b: Place) -> bool:
+        """Whether a contact vanishes between a and b, at one of which its length has no digits."""
+        least = np.minimum(np.abs(a.jumps), np.abs(b.jumps))
+        return bool(np.any(((a.jumps * b.jumps < 0) & (least < SHORT))[self._divided]))
+
+    def graze_beside(self, a: Place) -> LocatedEvent | None:
+        """The graze, near a, of a contact whose length has no digits there."""
+        for i in self._divided:
+            found = on_grazes(self.curve, i, a, LENGTHS) if abs(a.jumps[i]) < ACROSS else None
+            reach = NEAR * np.ptp(self.curve.bounds, axis=1)
+            if found is not None and np.all(np.abs(found.place.p - a.p)[:2] <= reach):
+                return found._replace(event=replace(found.event, impact=i))
+        return None
+
+    def behind(self, graze: Place) -> Point | None:
+        """The curve behind such a graze, on its way there."""
+        if self._clear is None:
+            return None
+        (x, p), guess = self._clear, self.curve.copied(graze)
+        guess.x[:], guess.p[:] = 2 * graze.x - x, 2 * graze.p - p
+        row = self.curve.unit_row(self.curve.difference(graze, guess))
+        beyond = self.curve.correct(guess, row)
+        if beyond is not None:
+            turned = np.sign(beyond.direction @ row)
+            beyond.tangent[:] *= turned
+            beyond.tangent_p[:] *= turned
+        return beyond
