@@ -159,7 +159,12 @@ def echoes(curve: SolutionCurve, one: LocatedEvent, other: LocatedEvent) -> bool
 
 def same(curve: SolutionCurve, one: LocatedEvent, other: LocatedEvent) -> bool:
     """Whether two points are one, to rounding."""
-    apart = np.abs(one.place.p - other.place.p)[:2] - one.error - other.error
+    return lies_at(curve, one, other.place, other.error)
+
+
+def lies_at(curve: SolutionCurve, one: LocatedEvent, place: Place, error: float = 0.0) -> bool:
+    """Whether a point is this place, to rounding."""
+    apart = np.abs(one.place.p - place.p)[:2] - one.error - error
     return bool(np.all(apart <= ROUNDING * np.ptp(curve.bounds, axis=1)))
 
 

@@ -18,7 +18,7 @@ from vibro_sweep.analysis.curves.curve_events import (
     beside,
     found_between,
     found_to_edge,
-    same,
+    lies_at,
     without_echoes,
 )
 from vibro_sweep.analysis.curves.ends import End, birth, birth_near, in_full, just_before, strong_resonance
@@ -179,7 +179,7 @@ class CurveRun:
         ends = not (self.virtual or w.is_real(b))
         found = without_echoes(w, (found_to_edge if ends else found_between)(w, a, b))
         if leaves:
-            found = [one for one in found if not same(w, one, LocatedEvent(one.event, 1.0, b, 0.0))]
+            found = [one for one in found if not lies_at(w, one, b)]
         for one in found:
             self._add(one.place)
             if self._holds(one.event, one.place, *beside(w, a, b, one, found)) and not self._is_known(one):
@@ -294,7 +294,9 @@ class CurveRun:
         """The curve behind the graze of a contact whose length has no digits at a; the graze is recorded. None: there
         is none, or the curve ends there."""
         found = self._short.graze_beside(a)
-        beyond = found and self._short.behind(found.place)
+        if found is None:
+            return None
+        beyond = self._short.behind(found.place)
         if beyond is None or not (self.virtual or self.curve.is_real(beyond)):
             return None
         beyond.tests[TEST.length] = a.tests[TEST.length]
