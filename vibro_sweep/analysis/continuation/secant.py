@@ -112,8 +112,7 @@ class Secant:
 def error_of(
     curve: SolutionCurve, a: Place, b: Place, test: Callable[[Point], float], share: float, point: Point
 ) -> float | None:
-    """The error of the parameters of a zero at a share of the secant; None: there are no points beside it, or the test
-    is rounding all along.
+    """The error of the parameters of a zero at a share of the secant; None: there are no points beside it.
 
     Rounding of the equations moves the line, and rounding of the test moves its zero along the line. The second is seen
     in what points beside it say, which round differently: p - test dp/dtest, without the straight line that a wrong
@@ -129,8 +128,6 @@ def error_of(
             far = secant.at(share + (distance if share < 0.5 else -distance), exact=False)
             if not abs(test(far) - tests[middle]) < least:
                 break
-        else:
-            return None
     except ArithmeticError:
         return None
     with np.errstate(all="ignore"):

@@ -212,7 +212,9 @@ def locate(curve: SolutionCurve, event: Event, a: Place, b: Place) -> LocatedEve
         if at > max(0.5 * min(ends), VANISHED) or not is_sharp(curve, event, place):
             return None
     error = error_of(curve, a, b, event.test, share, place)
-    return None if error is None else LocatedEvent(event, share, place, error)
+    if error is None or (event.index is not None and error > np.abs(b.p - a.p)[:2].max()):  # rounding, all along
+        return None
+    return LocatedEvent(event, share, place, error)
 
 
 def is_divided(curve: SolutionCurve, impact: int) -> bool:
