@@ -1,7 +1,11 @@
 """Stops that differ, or are compliant: where branches end, what begins at special points, and wide bounds."""
 
+import math
+
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
+from scipy.optimize import fsolve
 from support import compliant_curves
 from support.compliant_branches import drawn_case, follow
 from support.random_curves import steps_of
@@ -124,6 +128,42 @@ def test_a_resonant_graze_whose_test_is_nearly_flat_is_one_point_with_its_error(
     for one in found[0]:
         near = min(found[1], key=lambda other: abs(one.parameters["k_stop"] - other.parameters["k_stop"]))
         assert abs(one.parameters["k_stop"] - near.parameters["k_stop"]) <= one.error + near.error < 0.2
+
+
+def test_a_curve_of_grazes_ends_where_its_touch_comes_to_the_contact_before():
+    """There the mass leaves the stop without speed and acceleration. It is integrated from there, once around."""
+    numbers = {"k": 1.0, "zeta": 0.064, "F": 1.471, "constant": 0.114, "omega": 1.852, "b": 0.28, "tau": 0.864}
+    system = vs.Oscillator.named("one_mass", stops="left", k_stop=39.83, c_stop=5.68, **numbers)
+    branch = vs.continue_orbit(vs.periodic_orbit(system, itinerary="L"), "omega", (0.92, 3.3))
+    graze = next(one for one in branch.special if one.type == "graze")
+    ends = []
+    for factor in (0.5, 1.0, 2.0):
+        with steps_of(factor):
+            curve = vs.bifurcation_curve(graze, ("omega", "k_stop"), ((0.92, 3.3), (6.6, 240)))
+        (end,) = points(curve, "split")
+        before, touch = end.orbit.contacts
+        assert touch["t_touch"] == touch["t_release"] == pytest.approx(before["t_release"], abs=1e-12)
+        ends.append((end.parameters["omega"], end.parameters["k_stop"], end.error))
+    for one in ends:
+        assert one[:2] == pytest.approx(ends[0][:2], abs=one[2] + ends[0][2]) and one[2] < 1e-9
+
+    def left(unknown):
+        omega, k_stop = unknown
+        phase = math.asin((-0.28 - 0.114) / 1.471)  # of the force: no acceleration at the stop, and then away from it
+
+        def pull(t, y, k, c):
+            return y[1], 1.471 * math.sin(omega * t + phase) + 0.114 - (0.128 + c) * y[1] - y[0] - k * (y[0] + 0.28)
+
+        def back(t, y, *_):
+            return y[0] + 0.28 if t > 0.1 else 1.0
+
+        back.terminal, period = True, 2 * math.pi / omega
+        exact = {"rtol": 1e-12, "atol": 1e-13, "method": "DOP853"}
+        flight = solve_ivp(pull, (0, period), [-0.28, 0.0], args=(0.0, 0.0), events=back, **exact)
+        contact = solve_ivp(pull, (flight.t[-1], period), flight.y[:, -1], args=(k_stop, 5.68), **exact)
+        return contact.y[0, -1] + 0.28, contact.y[1, -1]
+
+    assert ends[0][:2] == pytest.approx(fsolve(left, [1.01, 21.0], xtol=1e-12), rel=1e-8)
 
 
 def test_a_curve_keeps_within_its_bounds_where_a_preload_vanishes(soft_branch, tmp_path):

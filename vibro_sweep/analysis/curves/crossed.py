@@ -57,7 +57,7 @@ def crossed(curve: SolutionCurve, a: Place, b: Place, impact: int) -> tuple[floa
             shares = zero + reach * NODES
             places = [secant.at(share) for share in shares.tolist()]
             tests = np.array([secant.test(place) for place in places])
-            weights, fewer = _weights(tests), np.pad(_weights(tests[1:-1]), 1)
+            weights, fewer = lagrange_weights(tests), np.pad(lagrange_weights(tests[1:-1]), 1)
             zero = float(weights @ shares)
     except ArithmeticError:
         return None
@@ -75,7 +75,7 @@ def crossed(curve: SolutionCurve, a: Place, b: Place, impact: int) -> tuple[floa
     return zero, place, float(apart.max() + DIGITS * np.abs(p).max() + ROWS * lost)
 
 
-def _weights(tests: np.ndarray) -> np.ndarray:
+def lagrange_weights(tests: np.ndarray) -> np.ndarray:
     """Weights of values at points with these tests, for the polynomial through them at test zero (Lagrange)."""
     ratios = tests / (tests - tests[:, None] + np.diag(tests))  # 1 on the diagonal
     return np.prod(ratios, axis=1)

@@ -23,6 +23,7 @@ from vibro_sweep.analysis.curves.curve_events import (
 )
 from vibro_sweep.analysis.curves.ends import End, birth, birth_near, in_full, just_before, strong_resonance
 from vibro_sweep.analysis.curves.short_contacts import ShortContacts
+from vibro_sweep.analysis.curves.touch_at_contact import touch_at_contact
 from vibro_sweep.analysis.curves.vanishing_preload import without_preload
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit, orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
@@ -135,7 +136,7 @@ class CurveRun:
         end = birth_near(w, a) if w.problem.repeats or w.problem.mirrors else None
         if end is not None:
             self._end(end)
-        elif not (self._join_contacts(a) or self._lose_preload(a) or self._reach_graze(a)):
+        elif not (self._join_contacts(a) or self._touch_contact(a) or self._lose_preload(a) or self._reach_graze(a)):
             self.special.append(self._at("failed", a, np.nan))
 
     def _write_out(self, a: Place) -> bool:
@@ -279,6 +280,15 @@ class CurveRun:
         self._add_solution(place.p.copy(), both)
         point = self._at("split", place, error, event, place.curve)
         self.special.append(replace(point, orbit=orbit_of(point.orbit.system, both)))
+        return True
+
+    def _touch_contact(self, a: Place) -> bool:
+        """End where the touch of a curve of grazes comes to the contact beside it. False: it does not."""
+        found = touch_at_contact(self.curve, a)
+        if found is None:
+            return False
+        self._add(found[0])
+        self.special.append(self._at("split", *found))
         return True
 
     def _lose_preload(self, a: Place) -> bool:
