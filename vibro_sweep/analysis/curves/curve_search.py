@@ -25,6 +25,7 @@ from vibro_sweep.analysis.periodic.one_thread import one_thread
 from vibro_sweep.analysis.periodic.solution import Solution
 
 NEAR = 0.003  # of the bounds: farther than that from the chord of two neighbouring points their curve does not lead
+MOST = 8  # times that a curve comes so near, of thousands that rounding makes where points lie close together
 SAME = 1e-8  # of the bounds; of impulses a hundred times as much
 
 
@@ -78,7 +79,11 @@ def _crossings(arrays: Arrays, seed: Seed, names, bounds: Bounds, place, size):
     at = arrays["value"] / size
     chord, away = np.diff(at, axis=0), place / size - at[:-1]
     share = np.clip((away * chord).sum(axis=1) / np.maximum((chord**2).sum(axis=1), 1e-300), 0, 1)
-    for i in np.flatnonzero(np.hypot(*(away - share[:, None] * chord).T) < NEAR):
+    distance = np.hypot(*(away - share[:, None] * chord).T)
+    beside = np.pad(distance, 1, constant_values=np.inf)
+    nearest = (distance <= beside[:-2]) & (distance <= beside[2:])  # of each time that the curve comes near
+    near = np.flatnonzero(nearest & (distance < NEAR))
+    for i in near[np.argsort(distance[near], kind="stable")][:MOST]:
         row = int(i + (share[i] > 0.5))
         row = min(max(row, 1), len(at) - 2) if len(at) > 2 else row  # at its ends a curve may be singular
         system = seed.system.replace(**dict(zip(names, map(float, arrays["value"][row]), strict=True)))
