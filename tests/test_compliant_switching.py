@@ -11,6 +11,8 @@ from support.compliant_branches import drawn_case, follow
 from support.random_curves import steps_of
 
 import vibro_sweep as vs
+from vibro_sweep.analysis.curves.curve_arrays import arrays_of
+from vibro_sweep.analysis.curves.curve_search import Curves, seed_at
 
 NAMES = ("b", "omega")
 
@@ -86,6 +88,19 @@ def test_curves_of_doubled_orbits_with_contacts_begin_at_a_degenerate_flip(soft_
         assert fold.orbit.period == 2 and np.abs(fold.multipliers - 1).min() < 1e-9
         ends = [one.parameters for one in vs.bifurcation_curve(fold, along, box).special if one.type == point.type]
         assert any(one == pytest.approx(point.parameters, rel=1e-8) for one in ends)
+
+
+def test_curves_of_contacts_come_back_from_files_and_know_their_own_points(soft_branch, tmp_path):
+    """They came back as impacts, and a search did not see that a point lies on a curve."""
+    flip = next(one for one in soft_branch.special if one.type == "flip")
+    names, bounds = ("omega", "k_stop"), np.array(((0.3, 3), (5, 100)))
+    curve = vs.bifurcation_curve(flip, names, bounds)
+    curve.save(tmp_path / "curve.h5")
+    for one, again in zip(curve.special, vs.load(tmp_path / "curve.h5").special, strict=True):
+        assert np.abs(one.orbit.state - again.orbit.state).max() < 1e-12
+        assert len(one.orbit.contacts) == len(again.orbit.contacts) > 0
+        assert np.abs(one.multipliers - again.multipliers).max() < 1e-9
+    assert Curves(names, bounds, ()).passes(arrays_of(curve), seed_at(flip, names))
 
 
 BOTH = {"k_stop": 30.0, "k_stop_left": 30.0, "c_stop": 1.0, "c_stop_left": 1.0, "preload": 0.1, "preload_left": 0.1}

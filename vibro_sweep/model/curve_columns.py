@@ -9,7 +9,8 @@ _SHARED = {
     *("branch_period", "branch_symmetric", "branch_closed", "branch_row_size", "branch_impacts", "branch_special"),
     *("branch_begins", "branch_ends", "branch_parent", "branch_parent_special", "branch_generation"),
     *("multiplier_re", "multiplier_im", "stop_distance", "min_impact_speed", "residual", "status"),
-    *("impact_t", "impact_side", "impact_v", "special_value", "special_branch", "special_point", "special_error"),
+    *("impact_t", "impact_side", "impact_v", "impact_t_off"),
+    *("special_value", "special_branch", "special_point", "special_error"),
 }
 
 OF_CURVES = (  # branches are curves here, along which an orbit bifurcates

@@ -29,7 +29,7 @@ SHAPES = {
     "n 2": "value",  # both parameters
     "n": "b_star stop_distance min_impact_speed residual unstable status",
     "n 2N": "state multiplier_re multiplier_im",
-    "n K": "impact_t impact_v",  # continuous along the curve
+    "n K": "impact_t impact_v impact_t_off",  # continuous along the curve; ends of rests and contacts, else NaN
     "K": "impact_side",
     "s": "special_type special_point special_touches special_error",  # in order along the curve
     "s 2": "special_value",
@@ -46,9 +46,12 @@ def arrays_of(curve: BifurcationCurve) -> Arrays:
     t, v, sides = (data[name].values for name in ("impact_t", "impact_v", "impact_side"))
     speeds = np.abs(np.delete(v, grazing, axis=1) if grazing >= 0 else v)
     oscillators = [solution_curve.oscillators.at(p).linear for p in value]
+    off, rests, rows = np.full(t.shape, np.nan), list(start.rests), curve._rows
+    off[:, rests] = t[:, rests] + (rows.ends - rows.t[:, rests])
     if start.sigma == -1:
         half = np.array([np.pi * start.half_periods / q.omega for q in oscillators])
-        t, v, sides = np.hstack([t, t + half[:, None]]), np.hstack([v, -v]), np.hstack([sides, -sides])
+        t, off = (np.hstack([times, times + half[:, None]]) for times in (t, off))
+        v, sides = np.hstack([v, -v]), np.hstack([sides, -sides])
     result = common(curve, start, curve.parameters, value, CODES_OF_CURVES) | {
         "branch_type": np.int8(CURVES.index(curve.type)),
         "branch_grazing": np.int32(grazing),
@@ -61,6 +64,7 @@ def arrays_of(curve: BifurcationCurve) -> Arrays:
         "status": data.virtual.values.astype(np.int8),
         "impact_t": t,
         "impact_v": v,
+        "impact_t_off": off,
         "impact_side": sides[0].astype(np.int8),
         "special_touches": np.array([one.touches for one in curve.special], np.int8),
     }
@@ -79,8 +83,7 @@ def type_of(arrays: Arrays) -> str:
 
 def solution_at(arrays: Arrays, point: int, system) -> Solution:
     """The orbit at a point of a curve; `system` has the parameters of that point."""
-    t = arrays["impact_t"][point]
-    return solution_of(arrays, system, t, arrays["impact_v"][point], np.full(len(t), np.nan))
+    return solution_of(arrays, system, *(arrays[name][point] for name in ("impact_t", "impact_v", "impact_t_off")))
 
 
 def start_from(arrays: Arrays, point: int, system) -> Start:
