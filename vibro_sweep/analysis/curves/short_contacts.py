@@ -18,6 +18,7 @@ from vibro_sweep.engine.continuation.workspace import Place
 ACROSS = 1e-5  # length, in phase, of a contact that has digits again
 LENGTHS = (1e-4, 1e-3, 1e-2)  # along a curve of grazes, in which the graze is looked for
 NEAR = 1e-2  # of the bounds, within which it lies
+MOST = 32  # times that a run goes over a graze: rounding may lead it to and fro
 
 
 class ShortContacts:
@@ -27,6 +28,7 @@ class ShortContacts:
         self.curve = curve
         self._divided = [i for i in range(curve.K) if is_divided(curve, i)]
         self._clear: tuple[np.ndarray, np.ndarray] | None = None
+        self._left = MOST
 
     def keep(self, x: np.ndarray, p: np.ndarray) -> None:
         """Take note of points (points, K, 2N + 2), (points, 3) of the curve."""
@@ -50,8 +52,9 @@ class ShortContacts:
 
     def behind(self, graze: Place) -> Point | None:
         """The curve behind such a graze, on its way there."""
-        if self._clear is None:
+        if self._clear is None or self._left == 0:
             return None
+        self._left -= 1
         (x, p), guess = self._clear, self.curve.copied(graze)
         guess.x[:], guess.p[:] = 2 * graze.x - x, 2 * graze.p - p
         row = self.curve.unit_row(self.curve.difference(graze, guess))

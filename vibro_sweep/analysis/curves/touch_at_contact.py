@@ -22,12 +22,13 @@ SMOOTH = 1e-8  # of the bounds: what all points and those without the outermost 
 
 def touch_at_contact(curve: SolutionCurve, a: Place) -> tuple[Point, float] | None:
     """The end near a, and its error; None where no flight beside the touch is about to vanish."""
-    s, K, j = curve.solution(a), curve.K, curve.problem.index
-    flights = flights_between(s) * curve.omega(a)
-    beside = [i for i in {j, (j - 1) % K} if flights[i] < SHORT]
-    if curve.problem.kind != GRAZE or not beside:
+    if curve.problem.kind != GRAZE:
         return None
-    ends = [end for reach in REACHES if (end := _without_flight(curve, a, beside[0], reach)) is not None]
+    flights, touch = flights_between(curve.solution(a)) * curve.omega(a), curve.problem.index
+    beside = [i for i in (touch - 1, touch) if flights[i] < SHORT]
+    if not beside:
+        return None
+    ends = [end for reach in REACHES if (end := _without_flight(curve, a, beside[0] % curve.K, reach)) is not None]
     if not ends:
         return None
     (end, apart), *others = sorted(ends, key=lambda one: one[1])
