@@ -90,6 +90,19 @@ def test_curves_of_doubled_orbits_with_contacts_begin_at_a_degenerate_flip(soft_
         assert any(one == pytest.approx(point.parameters, rel=1e-8) for one in ends)
 
 
+def test_a_curve_that_begins_at_a_flip_has_its_contacts_where_the_phase_of_the_force_moves():
+    """With tau = "grazing" an end has a phase of the force of its own; half of its doubled orbit is as it was."""
+    special = next(one for one in follow(drawn_case(194)).special if one.type == "graze")
+    curve = vs.bifurcation_curve(special, NAMES, ((0.1, 0.14), (0.65, 0.76)))
+    assert curve.begins.type == "flip_graze"
+    arrays, alone = arrays_of(curve), curve.begins.orbit.contacts
+    touch, *lengths = np.sort(arrays["impact_t_off"] - arrays["impact_t"], axis=1).T
+    assert abs(touch[0]) < 1e-12
+    twice = np.sort(np.tile(alone["t_release"] - alone["t_touch"], 2))
+    np.testing.assert_allclose([length[0] for length in lengths], twice, rtol=1e-9)
+    assert np.isfinite(curve.points.multiplier_re.values[0]).all()
+
+
 def test_curves_of_contacts_come_back_from_files_and_know_their_own_points(soft_branch, tmp_path):
     """They came back as impacts, and a search did not see that a point lies on a curve."""
     flip = next(one for one in soft_branch.special if one.type == "flip")

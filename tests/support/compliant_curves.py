@@ -18,6 +18,12 @@ from support.same_branch import TooLongError, follow
 OTHERS = ("omega", "b", "zeta", "k_stop")  # the other number: the first that is not the branch's
 BESIDE, FAR = (0.1, 0.05), (0.4, 0.4)  # of both numbers, within which a curve is followed
 SAME = 1e-8  # of the numbers of a point of codimension two
+CRITICAL = {
+    "cusp": (1,), "fold_flip": (1, -1), "fold_graze": (1,), "flip_graze": (-1,), "pitchfork_graze": (-1,),
+    "resonance_1_1": (1,), "resonance_1_2": (-1,), "resonance_1_3": (np.exp(2j / 3 * np.pi),), "resonance_1_4": (1j,),
+    "fold_neimark_sacker": (1,), "flip_neimark_sacker": (-1,), "degenerate_flip": (-1,),
+}  # fmt: skip
+ROUNDED = 1e-3  # of a multiplier: beside a graze it moves like the square root of the numbers
 
 
 def study(seed: int, most=2, beside=BESIDE) -> tuple[collections.Counter, list[str]]:
@@ -45,6 +51,7 @@ def study(seed: int, most=2, beside=BESIDE) -> tuple[collections.Counter, list[s
         counted.update(curves=1, points=curve.points.sizes["point"])
         counted.update(one.type for one in curve.special)
         wrong += [f"{where}: failed at {one.parameters}" for one in curve.special if one.type == "failed"]
+        wrong += [f"{where}: {one.type} with {one.multipliers}" for one in curve.special if is_misnamed(one)]
         ways = []
         for factor in (0.5, 2.0):
             with steps_of(factor):
@@ -58,6 +65,12 @@ def study(seed: int, most=2, beside=BESIDE) -> tuple[collections.Counter, list[s
             if not curve.closed and not same:
                 wrong.append(f"{where}: other points {way}: {pairs}")
     return counted, wrong
+
+
+def is_misnamed(special) -> bool:
+    """Whether a point of codimension two lacks a multiplier that its type has."""
+    needed = CRITICAL.get(special.type, ())
+    return any(not np.abs(special.multipliers - mu).min(initial=np.inf) < ROUNDED for mu in needed)
 
 
 def known(curve):

@@ -219,8 +219,11 @@ def locate(curve: SolutionCurve, event: Event, a: Place, b: Place) -> LocatedEve
 
 def is_divided(curve: SolutionCurve, impact: int) -> bool:
     """Whether the condition of a critical orbit is divided by the length of this contact: rounding is, too."""
-    smooth = is_smooth(curve.orbit.family.linear, int(curve.problem.sides[impact]))
-    return smooth and FOLD <= curve.problem.kind <= TORUS
+    return FOLD <= curve.problem.kind <= TORUS and _is_smooth(curve, impact)
+
+
+def _is_smooth(curve: SolutionCurve, impact: int) -> bool:
+    return is_smooth(curve.orbit.family.linear, int(curve.problem.sides[impact]))
 
 
 def _along_grazes(curve: SolutionCurve, event: Event, a: Place, b: Place) -> LocatedEvent | None:
@@ -258,13 +261,14 @@ def on_grazes(curve: SolutionCurve, impact: int, aim: Place, lengths) -> Located
 
 
 def is_sharp(curve: SolutionCurve, event: Event, place: Place) -> bool:
-    """Whether rounding leaves a test its sign: that of multipliers has a pole where another impact vanishes, and all
-    are divided by the length of a contact."""
+    """Whether rounding leaves a test its sign: that of multipliers has a pole where another impact vanishes, all are
+    divided by the length of a contact on curves of critical orbits, and have it as a factor on those of grazes."""
     least = np.abs(place.jumps)
     if curve.problem.kind == GRAZE:
         least[curve.problem.index] = np.inf
-    divided = any(is_divided(curve, int(i)) for i in np.flatnonzero(least < SHORT))
-    return not divided and (event.index != TEST.pair or not np.any(least < SLOW))
+    shortest = SHORT if FOLD <= curve.problem.kind <= TORUS else VANISHED
+    lost = any(_is_smooth(curve, int(i)) for i in np.flatnonzero(least < shortest))
+    return not lost and (event.index != TEST.pair or not np.any(least < SLOW))
 
 
 def event_near(curve: SolutionCurve, place: Place, length: float, types) -> LocatedEvent | None:

@@ -329,9 +329,9 @@ class CurveRun:
     def _add_solution(self, p: np.ndarray, s: Solution) -> None:
         """Record an orbit that is not of this curve."""
         w, q = self.curve, s.family.linear
-        t, motion = s.times + (q.tau - w.tau) / q.omega, s.motion[:, :2]
+        later, motion = (q.tau - w.tau) / q.omega, s.motion[:, :2]
         h = s.states[0, : w.n] - steady_motion(q, s.times[0])
-        values = p, t, s.jumps, s.ends, motion, np.array(s.stop_distance), np.array(s.change), h
+        values = p, s.times + later, s.jumps, s.ends + later, motion, np.array(s.stop_distance), np.array(s.change), h
         self.rows.append(Rows(*(value[None].copy() for value in values)))
 
     def _at(self, of_type, place: Place, error: float, event: Event | None = None, curve=None) -> CurvePoint:
