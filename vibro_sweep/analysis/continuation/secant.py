@@ -17,6 +17,7 @@ LEAST = 1e-14  # of a secant, far below what rounding of tests leaves of a zero
 NOISE = 1e-11  # of a secant: nearer to a zero rounding of a test may lie
 COARSE = 1e3  # times both, of orbits of many impacts: their tests round by more, and each point takes long
 STEPS = 4
+ASTRAY = 3.0  # secants off the line: beyond it lies another piece of the curve
 BESIDE = (-3e-12, -1e-12, 0.0, 1e-12, 3e-12)  # of a secant, from the zero: so near that only rounding differs
 FARTHER = (ASIDE, 1e-5, 1e-3, 0.1)  # of a secant, from the zero: where its slope is looked at
 ABOVE = 30.0  # times what rounding does: a test that changes by more has a slope
@@ -25,7 +26,7 @@ OF_TESTS = 3.0  # times what rounding of the equations does, where rounding of a
 
 
 def root(curve: SolutionCurve, a: Place, b: Place, test: Callable[[Point], float]) -> tuple[float, Point] | None:
-    """(share of the secant from a to b, point) where the test, of size 1, vanishes."""
+    """(share of the secant from a to b, point) where the test, of size 1, vanishes; None where no point is found."""
     secant = Secant(curve, a, b, test)
     try:
         if secant.value(0.0) * secant.value(1.0) > 0:
@@ -36,7 +37,9 @@ def root(curve: SolutionCurve, a: Place, b: Place, test: Callable[[Point], float
             secant.value(share)
     except (ArithmeticError, RuntimeError):
         return None
-    return share, secant.seen[share]
+    point = secant.seen[share]
+    astray = curve.distance(curve.between(a, b, share), point) > ASTRAY * curve.distance(a, b)
+    return None if astray else (share, point)
 
 
 class Secant:
