@@ -37,6 +37,7 @@ from vibro_sweep.engine.impulses.flow import steady_motion
 
 FIRST_STEP = 1e-3
 CLOSE = 1e-6  # distance, in the units of a curve, from the first point where it comes back to it
+SHORTER = 4  # times that the step over a boundary is halved
 MOST_POINTS = 50_000
 
 
@@ -234,15 +235,21 @@ class CurveRun:
 
     def _at_boundary(self, a: Place, b: Place, j: int, boundary: float) -> Place | None:
         """The point where a parameter is at its boundary; the curve may be nearly parallel to that side of the
-        bounds."""
+        bounds, or bent so much that the secant from a to b is no guess, but a shorter one is."""
         w = self.curve
-        place = w.at_value(a, b, j, boundary)
-        if place is None:
-            found = root(w, a, b, lambda place: (place.p[j] - boundary) / np.ptp(w.bounds[j]))
-            place = found and found[1]
-        if place is not None:
-            place.p[j] = boundary
-        return place
+        for _ in range(SHORTER):
+            place = w.at_value(a, b, j, boundary)
+            if place is None:
+                found = root(w, a, b, lambda place: (place.p[j] - boundary) / np.ptp(w.bounds[j]))
+                place = found and found[1]
+            if place is not None:
+                place.p[j] = boundary
+                return place
+            middle = w.step(a, w.distance(a, b) / 2)
+            if middle is None:
+                return None
+            a, b = (a, middle) if (middle.p[j] - boundary) * (b.p[j] - boundary) > 0 else (middle, b)
+        return None
 
     def _ends(self, a: Place, b: Place, inside: bool) -> bool:
         """Whether the curve ends: its pair meets at 1 or -1 ahead of b, or its orbit is born between a and b.
