@@ -14,7 +14,7 @@ from vibro_sweep.engine.continuation.workspace import TEST
 from vibro_sweep.engine.simd.jit import jit
 
 PER_TIME_CONSTANT = 1.5  # of a contact: what its rates count beside those of the free motion
-ROUNDED = 1e-12  # of numbers of size 1, between polynomials
+ROUNDED = 1e-12  # of numbers of size 1, between polynomials, and of lengths
 OUTWARDS = 1e-6  # speed, in units of a branch: more than what is left of it beside a graze
 
 
@@ -58,14 +58,14 @@ def force_scale(f, compliant, side):
 
 
 @jit
-def ends_by_force(f, compliant, side, speed):
-    """Whether an event that ends with this gap velocity ends where the force is 0: a rest, or a contact whose force
-    vanishes before the gap is at its stop."""
+def ends_by_force(f, compliant, side, length, speed):
+    """Whether an event of this length that ends with this gap velocity ends where the force is 0: a rest, or a contact
+    whose force vanishes before the gap is at its stop. With a preload, a contact without length has not begun."""
     law = law_at(f, side)
     if not is_contact(compliant, side):
         return True
     c, p = f.values[law + 1], f.values[law + 2]
-    return f.by_force > 0 and c != 0.0 and (p == 0.0 or side * c * speed + p < 0.0)
+    return f.by_force > 0 and c != 0.0 and (p == 0.0 or (length > ROUNDED and side * c * speed + p < 0.0))
 
 
 @jit

@@ -37,7 +37,7 @@ def differentiate_last(f, compliant, side, x, e, through, work):
         for k in range(n + 4):
             varied[k] = work.start_rate[k] * phase + (work.moving[k] * e.v[k] if k < n else 0.0)
             rows[A, k] = through[k] if k < n else 0j
-        by_force = ends_by_force(f, compliant, side, end[N])
+        by_force = ends_by_force(f, compliant, side, x[n + 1], end[N])
         weight = e.w[1] / force_scale(f, compliant, side) if by_force else e.w[1]
         if by_force:
             for k in range(n + 4):

@@ -80,7 +80,7 @@ def last(f, compliant, side, x, e, work):
     for r in range(n):  # E (Z_phi - B Z)
         e.carry[r, n] = dot(E[0, r], work.start_rate, n + 2) - dot(B[0, r], end[0], n + 4)
         e.carry[r, n + 1] = 0.0
-    by_force = ends_by_force(f, compliant, side, end[0, N])
+    by_force = ends_by_force(f, compliant, side, s, end[0, N])
     if by_force:
         put_force_row(f, force_scale(f, compliant, side), e, work)
     else:

@@ -36,7 +36,8 @@ def last_series(f, compliant, side, x, e, y, work):
                 for k in range(n + 4):
                     Z[r, m] += work.lasting[0, r, k] * y[k, m]
         grow(work.generator[0], n + 2, n + 4, 1.0, e.series[1], Z, y, work.states[2], work.jets)
-        by_force, scale = ends_by_force(f, compliant, side, work.end[0, n // 2]), force_scale(f, compliant, side)
+        by_force = ends_by_force(f, compliant, side, s, work.end[0, n // 2])
+        scale = force_scale(f, compliant, side)
         for m in range(TERMS):
             if by_force:
                 e.left[1, m] = dot(work.force[0], Z[:, m], n + 4) / scale
