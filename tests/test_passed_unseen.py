@@ -12,7 +12,7 @@ from vibro_sweep.analysis.branches import branch_run
 from vibro_sweep.analysis.branches.crossings import explained, stands_alone
 from vibro_sweep.analysis.branches.looking import extremum
 from vibro_sweep.analysis.continuation import solution_curve
-from vibro_sweep.engine.continuation.branch_tests import FARTHER, dips
+from vibro_sweep.engine.continuation.between_points import FARTHER, dips
 from vibro_sweep.engine.simd.jit import exported
 
 BESIDE = vs.Oscillator(

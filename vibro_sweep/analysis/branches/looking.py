@@ -10,7 +10,7 @@ from vibro_sweep.analysis.branches.crossings import counts_of, explained, is_tor
 from vibro_sweep.analysis.continuation.events import LocatedEvent, Test
 from vibro_sweep.analysis.continuation.point import Point, along
 from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve
-from vibro_sweep.engine.continuation.branch_tests import FARTHER
+from vibro_sweep.engine.continuation.between_points import FARTHER
 from vibro_sweep.model.bifurcations import BY_NAME
 
 SHARES = (0.5, 0.4, 0.6, 0.3)  # of the way to the next point, where the first lies on a bifurcation by chance

@@ -4,8 +4,9 @@ import math
 
 import numpy as np
 
+from vibro_sweep.engine.continuation.between_points import changes_sign, dips, turns_back
 from vibro_sweep.engine.continuation.certificate import certify
-from vibro_sweep.engine.continuation.curve_tests import changes_sign, determinant, eigenvalues_of, passes_birth
+from vibro_sweep.engine.continuation.curve_tests import determinant, eigenvalues_of, passes_birth
 from vibro_sweep.engine.continuation.lasting import factor_of_grazes, sign_of_events, speed_before
 from vibro_sweep.engine.continuation.moving_flow import OMEGA, ONE_PLUS_R_HIGH, ONE_PLUS_R_LOW
 from vibro_sweep.engine.continuation.workspace import BRANCH_TESTS, TEST
@@ -13,7 +14,6 @@ from vibro_sweep.engine.impulses.pairs import ON_PAIR, ON_SQUARE, exchanged
 from vibro_sweep.engine.simd.jit import noinline, small
 
 PASSED = 1e-13  # distance beyond a stop, in units of the gap, which rounding does not explain
-FARTHER = 2.0  # times: a number that is so much nearer to zero than at the points beside changes too fast between them
 ZERO = ON_SQUARE**2, ON_PAIR**2  # of |1 + mu|^2 and |1 - mu_i mu_j|^2: what no point of a branch comes to by chance
 FAR_OUTSIDE = 0.5  # of |mu|^2 - 1: multipliers from there on do not reach the circle within a step and go back
 
@@ -117,30 +117,6 @@ def crosses_over(c, a, b):
 
 
 @small
-def dips(x, y, z, before, behind):
-    """Whether a number with these values at three points, at the distances `before` and `behind` from the middle one,
-    may vanish twice near the middle one: the parabola has an extremum nearer to zero by a quarter or more, or steps are
-    too long for it to tell: the outer points are farther from zero by FARTHER. Or, where the last is nearest to zero,
-    between the middle one and that: the parabola does so."""
-    if y < 0.0:
-        x, y, z = -x, -y, -z
-    if not (y <= x and 0.0 < z and x + z < np.inf):
-        return False
-    left, right = (y - x) / before, (z - y) / behind
-    slope, curve = left * behind + right * before, right - left  # both times the distance of the outer points
-    depth = slope * slope / (before + behind)
-    if z < y:
-        return -slope < 2.0 * curve * behind and depth > 4.0 * curve * y
-    return depth > curve * y or min(x, z) > FARTHER * y
-
-
-@small
-def turns_back(x, slope, y, later, length):
-    """Whether a number that is positive at two points may be negative between them: where its tangents meet it is."""
-    return slope < 0.0 < later and x * (slope - later) + slope * (y - x - later * length) > 0.0
-
-
-@small
 def happens_on_branch(c, a, b):
     """Whether a test changes its sign between two points, multipliers cross the unit circle, or b is out of the stops;
     or whether something may do so twice."""
@@ -166,7 +142,7 @@ def happens_on_branch(c, a, b):
 @small
 def touches_on_branch(path, a, b):
     """Whether what is watched may vanish twice beside a, which lies between the point before it and b."""
-    before, x, y, z = path.before[0], path.past_tests, a.tests, b.tests
+    before, x, y, z = path.before[0], path.past.tests, a.tests, b.tests
     if before == 0.0:
         return False
     for i in (TEST.rate, TEST.stop_distance, TEST.reflected, TEST.crossing):

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from vibro_sweep.engine.continuation.between_points import changes_sign, dips
 from vibro_sweep.engine.continuation.certificate import certify
 from vibro_sweep.engine.continuation.chatter_sum import REACH
 from vibro_sweep.engine.continuation.conditions import keep_null_vectors
@@ -140,12 +141,6 @@ def examine_null_vectors(f, c, place, b, n, grazes):
 
 
 @small
-def changes_sign(x, y):
-    """Whether two numbers differ in sign; their product may underflow."""
-    return (x > 0.0 > y) or (x < 0.0 < y)
-
-
-@small
 def passes(a, b):
     """Whether a distance changes its sign by more than rounding: where both stops are touched at once, it is zero."""
     return (a > TOUCHING and b < -TOUCHING) or (a < -TOUCHING and b > TOUCHING)
@@ -195,6 +190,16 @@ def happens_on_curve(c, a, b):
             if (a.p[THETA] - angle) * (b.p[THETA] - angle) <= 0.0:
                 return True
         return not NEAR_STRONG < b.p[THETA] < math.pi - NEAR_STRONG
+    return False
+
+
+@small
+def touches_on_curve(path, a, b):
+    """Whether a test may vanish twice beside a, which lies between the point before it and b."""
+    x, y, z = path.past.tests, a.tests, b.tests
+    for i in (*CURVE_TESTS, TEST.stop_distance):
+        if dips(x[i], y[i], z[i], path.before[0], z[TEST.length]):
+            return True
     return False
 
 

@@ -7,7 +7,7 @@ from vibro_sweep.engine.continuation.branch_tests import (
     touches_on_branch,
 )
 from vibro_sweep.engine.continuation.corrector import assemble
-from vibro_sweep.engine.continuation.curve_tests import examine_curve, happens_on_curve
+from vibro_sweep.engine.continuation.curve_tests import examine_curve, happens_on_curve, touches_on_curve
 from vibro_sweep.engine.continuation.problem import ORBIT, STICK
 from vibro_sweep.engine.continuation.residual import fly_through
 from vibro_sweep.engine.simd.jit import small
@@ -42,8 +42,14 @@ def happens(c, a, b):
 
 @small
 def touches(path, c, a, b):
-    """Whether something may happen twice beside a, unseen by the tests."""
+    """Whether something may happen twice beside a point of a branch, unseen by the tests."""
     return c.kind == ORBIT and touches_on_branch(path, a, b)
+
+
+@small
+def may_pass_twice(path, c, a, b):
+    """The same of a curve."""
+    return c.kind != ORBIT and touches_on_curve(path, a, b)
 
 
 @small

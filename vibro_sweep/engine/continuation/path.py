@@ -40,17 +40,16 @@ class Path(NamedTuple):
     first: Place
     a: Place  # where the last step began
     record: Record
-    past: np.ndarray  # (n, 2) multipliers of the point before a
-    past_tests: np.ndarray  # (len(TEST),)
+    past: Place  # the point before a
     before: np.ndarray  # (1,) the distance from there to a; 0 where it is not known
 
 
 def new_path(most: int, K: int, n: int, longest: float, shortest: float, straight: float, bounds) -> Path:
     """most: points of one call."""
     shapes = (most, K, n + 2), (most, K, 2), (most, 3), (most, len(TEST)), most, most, (most, n)
-    places, past = (new_place(K, n), new_place(K, n)), (np.zeros((n, 2)), np.zeros(len(TEST)), np.zeros(1))
     record, counts = Record(*map(np.zeros, shapes)), np.zeros(3, np.int64)
-    return Path(longest, shortest, straight, bounds, counts, *places, record, *past)
+    first, a, past = (new_place(K, n) for _ in range(3))
+    return Path(longest, shortest, straight, bounds, counts, first, a, record, past, np.zeros(1))
 
 
 @small
@@ -74,11 +73,19 @@ def copy_place(a, b):
 @small
 def remember(path, a, length):
     """Keep a as the point before the next one, at this distance."""
-    for r in range(len(path.past)):
-        path.past[r, 0], path.past[r, 1] = a.multipliers[r, 0], a.multipliers[r, 1]
-    for j in range(len(TEST)):
-        path.past_tests[j] = a.tests[j]
+    copy_place(a, path.past)
     path.before[0] = length
+
+
+@small
+def go_back(path, length):
+    """Take back the step before, where it is one of this call. Half the length of the step to be made shorter."""
+    if path.counts[1] > 0 and path.before[0] > 0.0:
+        copy_place(path.past, path.a)
+        length = path.before[0]
+        path.counts[1] -= 1
+        path.before[0] = 0.0
+    return 0.5 * length
 
 
 @small

@@ -3,7 +3,7 @@
 Distances are measured in the units of the problem, over phases, jumps, parameters and theta. A call ends where
 something happens between two points, so that the caller can locate it; both points are kept. It ends too where
 something may happen twice between two points of a branch, unseen by their tests: then the caller looks between them.
-A step that goes over to another branch is made shorter.
+A step that goes over to another branch is made shorter, and those of a curve beside which something may happen twice.
 """
 
 import math
@@ -15,7 +15,7 @@ from vibro_sweep.engine.continuation.corrector import assemble, in_order, move, 
 from vibro_sweep.engine.continuation.curve_tests import overflows
 from vibro_sweep.engine.continuation.guesses import close, converge_all
 from vibro_sweep.engine.continuation.lasting import contacts_begin, forced
-from vibro_sweep.engine.continuation.looking_at import examine, goes_over, happens, refresh, touches
+from vibro_sweep.engine.continuation.looking_at import examine, goes_over, happens, may_pass_twice, refresh, touches
 from vibro_sweep.engine.continuation.moving_flow import (
     OMEGA,
     build_middle,
@@ -28,6 +28,7 @@ from vibro_sweep.engine.continuation.path import (
     bulges,
     comes_back,
     copy_place,
+    go_back,
     keep,
     measured,
     outside,
@@ -54,7 +55,8 @@ BEYOND = 1.2  # times the reach of the plane, up to where its polynomials hold
 EARLY = 10  # points before which a curve is not yet taken to be closed
 KINK = 1e-3  # of the longest step: in which a branch may turn where a contact ends in another way
 FINE = 1e-6  # of the longest step: to that they are shortened where they go over to another branch
-COARSE = 0.03  # of the longest step: to that they are shortened where they do not distinguish pairs of multipliers
+COARSE = 0.03  # of the longest step: to that they are shortened where they do not distinguish pairs of multipliers, or
+# a test of a curve may vanish twice
 
 
 @jit
@@ -113,7 +115,7 @@ def correct(f, c, place, row, b, most, enough):
 def hides(path, a, b, length):
     """Whether two pairs, or one twice, may cross the unit circle between two points: their test does not tell."""
     here, there = a.multipliers, b.multipliers
-    return exchanged(here, there) or coarse(path.past, here, there, path.before[0], length)
+    return exchanged(here, there) or coarse(path.past.multipliers, here, there, path.before[0], length)
 
 
 @jit
@@ -159,6 +161,9 @@ def take_steps(f, c, path, place, row, b):
         over = length > FINE * path.longest and goes_over(c, a, place)
         if over or (length > COARSE * path.longest and hides(path, a, place, length)):
             length *= 0.5
+            continue
+        if min(length, path.before[0]) > COARSE * path.longest and may_pass_twice(path, c, a, place):
+            length = go_back(path, length)
             continue
         touching = touches(path, c, a, place)
         remember(path, a, length)
