@@ -22,6 +22,8 @@ from vibro_sweep.model.refusals import not_allowed
 BESIDE = 1e-4  # relative distance of the parameter from a graze
 APART = (1e-2, 1e-3, 1e-4)  # of 1/omega: the flight between the two contacts of an orbit beside a split
 NEAR = 0.1  # of the orbit beside a graze to what its slopes say, in 1/omega and the speed of the gap
+ALIKE = 1.25  # times: what their distances from the graze at a step and half of it may differ from what they should
+ROUNDED = 1e-9  # distance, in the same units, that tells nothing
 
 
 def switch(special: SpecialPoint) -> list[PeriodicOrbit]:
@@ -108,7 +110,7 @@ def index_in(special: SpecialPoint) -> int:
 
 def _beside(solution: Solution, name: str, impact: int | None, touching: Solution | None = None) -> Solution | None:
     """The orbit with (without) the grazing impact, a little beside the graze on the side where it exists; `touching` as
-    of `graze_at`."""
+    of `graze_at`. That at half the distance lies between the two, or another orbit was found."""
     value = solution.family.numbers[name]
     try:
         graze = graze_at(solution, name, impact, touching)
@@ -118,7 +120,7 @@ def _beside(solution: Solution, name: str, impact: int | None, touching: Solutio
     except np.linalg.LinAlgError:  # a fold as well: no slopes
         return None
     slope = graze.speed_slope if impact is None else graze.distance_slope
-    step = math.copysign(BESIDE * size_of(solution, name), slope)
+    step, last, ratio = math.copysign(BESIDE * size_of(solution, name), slope), None, math.sqrt(2) if grows else 2.0
     for _ in range(20):
         try:
             family = solution.family.replace(**{name: value + step})
@@ -129,9 +131,12 @@ def _beside(solution: Solution, name: str, impact: int | None, touching: Solutio
             found = None
         near = found is not None and found.real and np.abs((found.u - guess.u) / target.units).max(initial=0.0) < NEAR
         if near and is_steady(found, name):
-            return found
+            away = float(np.abs((found.u - target.u) / target.units).max(initial=0.0))
+            if away < ROUNDED or (last and ratio / ALIKE < last[1] / away < ratio * ALIKE):
+                return last[0] if last else found
+            last = found, away
         step /= 2
-    return None
+    return last and last[0]
 
 
 def pressed(graze: Graze, step: float) -> np.ndarray:

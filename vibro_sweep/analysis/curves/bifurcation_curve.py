@@ -23,7 +23,9 @@ from vibro_sweep.analysis.curves.curve_start import start_at
 from vibro_sweep.analysis.periodic.one_thread import one_thread
 from vibro_sweep.analysis.periodic.orbit_portrait import portrait
 from vibro_sweep.analysis.single.result import FileResult
-from vibro_sweep.engine.continuation.workspace import Place
+from vibro_sweep.engine.continuation.curve_tests import TOUCHING
+from vibro_sweep.engine.continuation.problem import GRAZE
+from vibro_sweep.engine.continuation.workspace import TEST, Place
 from vibro_sweep.model.arguments import check_call, check_type, checked_flag, checked_interval
 from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.linear import family_of
@@ -152,7 +154,7 @@ def bifurcation_curve(
     curve, first = first_of(curve)
     if first is None:
         raise ArgumentError(f"special: this {special.type} cannot be followed; it may belong to several curves at once")
-    if len(special.parameters) > 1 or special.type != start.type:  # perhaps of codimension two: begin beside it
+    if len(special.parameters) > 1 or special.type != start.type or touches_twice(curve, first):  # begin beside it
         places = curve.beside(first)
         first = next((place for place in places if curve.is_real(place)), (places or [first])[0])
     if not (virtual or curve.is_real(first)):
@@ -170,6 +172,14 @@ def bifurcation_curve(
     ends = [*reversed(down.special), *up.special]
     rows = both_directions(down.points, up.points)
     return BifurcationCurve(start.type, names, ends, down.special[-1], up.special[-1], False, curve, rows)
+
+
+def touches_twice(curve: SolutionCurve, place: Place) -> bool:
+    """Whether two turning points touch a stop at this point of a curve of grazes: it is of codimension two."""
+    if curve.problem.kind != GRAZE:
+        return False
+    others = np.abs(np.delete(place.jumps, curve.problem.index))
+    return bool(abs(place.tests[TEST.stop_distance]) < TOUCHING or np.any(others < TOUCHING))
 
 
 def first_of(curve: SolutionCurve) -> tuple[SolutionCurve, Place | None]:
