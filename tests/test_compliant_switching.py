@@ -11,7 +11,7 @@ from support.compliant_branches import drawn_case, follow
 from support.random_curves import steps_of
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.curves.curve_arrays import arrays_of
+from vibro_sweep.analysis.curves.curve_arrays import arrays_of, curve_of
 from vibro_sweep.analysis.curves.curve_search import Curves, seed_at
 
 NAMES = ("b", "omega")
@@ -116,6 +116,49 @@ def test_curves_of_contacts_come_back_from_files_and_know_their_own_points(soft_
     assert Curves(names, bounds, ()).passes(arrays_of(curve), seed_at(flip, names))
 
 
+@pytest.mark.parametrize("seed, types", [(6, {"closed"}), (8, {"flip_graze"}), (26, {"resonant_graze"})])
+def test_points_of_codimension_two_are_the_same_from_their_arrays(seed, types):
+    """Those at the birth of doubled orbits, where a touch vanishes, and where a curve comes back to its first point."""
+    case, met = drawn_case(seed), set()
+    for special in [one for one in follow(case).special if one.type in compliant_curves.TYPES][:3]:
+        names = case.name, "b" if case.name != "b" else "omega"
+        values = special.parameters[case.name], special.orbit.system.numbers[names[1]]
+        bounds = [(0.6 * value, 1.4 * value) for value in values]
+        curve = vs.bifurcation_curve(special, names, bounds)
+        for one, again in zip(
+            curve.special, curve_of(arrays_of(curve), names, special.orbit.system).special, strict=True
+        ):
+            met.add(one.type)
+            for name in ("itinerary", "period", "status"):
+                assert getattr(one.orbit, name) == getattr(again.orbit, name)
+            assert (one.type, one.stop, one.impact, one.touches) == (
+                again.type,
+                again.stop,
+                again.impact,
+                again.touches,
+            )
+            least = np.abs(one.multipliers[:, None] - again.multipliers).min(axis=1)
+            assert np.all((least < 1e-6) | (np.abs(one.multipliers) > 1e6))
+    assert types <= met
+
+
+def test_the_orbit_beside_a_graze_comes_to_it():
+    """A flip 4.7e-5 away: at the first step beside the graze Newton's method finds the orbit of half the period."""
+    system = vs.Oscillator.named(
+        "chain", stop_at=3, stops="left", m=[0.7797221873246357, 0.9489295764871436, 1.664320727842913],
+        k=[1.6492019307110817, 0.35727377333468713, 1.1419131139769945, 0.7875386305639204],
+        c=[0.03660788332872998, 0.053583995651147305, 0.07054834832339184, 0.05325648631307066],
+        force=[0.2817669532093734, 0.9306469503541055, -0.9447583526241936], omega=2.190224834822359,
+        k_stop=172.35122840490698, b=-0.10686188779515482, tau=2.3649488658101587, offset=-0.32,
+    )  # fmt: skip
+    graze = vs.continue_orbit(vs.periodic_orbit(system, itinerary="L", periods=2), "offset", (-0.45, 0.3)).begins
+    assert graze.type == "graze" and graze.orbit.period == 2
+    (orbit,) = vs.switch(graze)
+    assert (orbit.itinerary, orbit.period) == ("LL", 2)
+    ends = vs.continue_orbit(orbit, "offset", (-0.45, 0.3)).special
+    assert any(one.type == "graze" and one.parameters == pytest.approx(graze.parameters, abs=1e-14) for one in ends)
+
+
 BOTH = {"k_stop": 30.0, "k_stop_left": 30.0, "c_stop": 1.0, "c_stop_left": 1.0, "preload": 0.1, "preload_left": 0.1}
 
 
@@ -207,6 +250,17 @@ def test_a_branch_goes_from_soft_to_rigid_within_wide_bounds(bounds):
     branch = vs.continue_orbit(vs.periodic_orbit(one_stop(), itinerary="R"), "k_stop", bounds)
     assert branch.status == "ok"
     assert [one.parameters["k_stop"] for one in (branch.begins, branch.ends)] == list(bounds)
+
+
+def test_bounds_so_wide_that_steps_are_rounding_are_refused(soft_branch):
+    orbit = vs.periodic_orbit(one_stop().replace(preload=0.1), itinerary="R")
+    with pytest.raises(
+        ValueError, match=r"bounds: \[0.0, 1e\+20\] is not allowed; .* as wide as preload is large, 0.1"
+    ):
+        vs.continue_orbit(orbit, "preload", (0, 1e20))
+    flip = next(one for one in soft_branch.special if one.type == "flip")
+    with pytest.raises(ValueError, match=r"bounds.b: .* as wide as b is large"):
+        vs.bifurcation_curve(flip, ("omega", "b"), ((0.3, 3), (-1e18, 1e18)))
 
 
 def test_bounds_that_reach_to_a_stop_without_stiffness_say_how_the_branch_ends():

@@ -16,6 +16,7 @@ from vibro_sweep.analysis.branches.branch_points import dataset, dataset_from_fi
 from vibro_sweep.analysis.branches.branch_start import NoStartError, changes_rests, start_of_run
 from vibro_sweep.analysis.branches.compiled_stepper import row_of
 from vibro_sweep.analysis.branches.free_run import run_from
+from vibro_sweep.analysis.branches.sizes import check_width
 from vibro_sweep.analysis.branches.special import SpecialPoint, table_of
 from vibro_sweep.analysis.branches.sticking import sticking_onset
 from vibro_sweep.analysis.continuation.allowed_range import in_range
@@ -124,6 +125,7 @@ def continue_orbit(orbit: PeriodicOrbit, parameter: str, bounds: tuple[float, fl
         raise ArgumentError(not_allowed("parameter", parameter, allowed))
     lo, hi = checked_interval("bounds", bounds, family.numbers[parameter])
     lo, hi = (in_range(orbit.system, parameter, bound) for bound in (lo, hi))
+    check_width("bounds", solution, parameter, lo, hi)
     try:
         first = start_of_run(solution, parameter, lo, hi)
     except NoStartError:

@@ -106,9 +106,9 @@ def common(of, start: Solution, names: tuple[str, ...], p: np.ndarray, codes: Ma
     for (
         place
     ) in places:  # special points are among the points, in the same order; a sticking onset is not an orbit of it
-        there = np.flatnonzero(np.all(values[least:] == place, axis=1))
-        least += int(there[0]) if len(there) else 0
-        points.append(least if len(there) else -1)
+        there = np.flatnonzero(np.all(values == place, axis=1))  # `closed` is the first point
+        least = next((int(point) for point in there if point >= least), least)
+        points.append(least if least in there else int(there[0]) if len(there) else -1)
     return {
         "branch_period": np.int32(start.whole().half_periods // 2),
         "branch_symmetric": np.int8(start.sigma == -1),

@@ -98,6 +98,13 @@ def is_torus(point: Point) -> bool:
     mu = s.multipliers
     if np.any(s.pushes < NO_SPEED * s.family.linear.omega * s.size_of_gap):
         return False
-    i, j = np.triu_indices(len(mu), 1)
-    k = np.argmin(np.abs(1 - mu[i] * mu[j]))
-    return abs(1 - mu[i[k]] * mu[j[k]]) < PRODUCT_ONE and abs(mu[i[k]].imag) > COMPLEX
+    one, other = nearest_pair(mu)
+    return abs(1 - one * other) < PRODUCT_ONE and abs(one.imag) > COMPLEX
+
+
+def nearest_pair(mu: np.ndarray) -> tuple[complex, complex]:
+    """The two multipliers whose product is nearest to 1; beside a graze one may be infinite and another one 0."""
+    finite = mu[np.isfinite(mu)]
+    i, j = np.triu_indices(len(finite), 1)
+    k = np.argmin(np.abs(1 - finite[i] * finite[j]))
+    return finite[i[k]], finite[j[k]]

@@ -5,7 +5,10 @@ import math
 import numpy as np
 
 from vibro_sweep.analysis.periodic.solution import Solution
+from vibro_sweep.model.errors import ArgumentError
+from vibro_sweep.model.refusals import not_allowed
 
+WIDEST = 1e12  # times the size of a number: in wider bounds steps would be rounding
 LEAST = 1e-3  # of what changes the oscillator as a whole: parameters nearer to 0 are as large
 
 
@@ -38,3 +41,12 @@ def least_size(solution: Solution, name: str) -> float:
 def sizes_of(solution: Solution, names) -> np.ndarray:
     """`size_of` each of several parameters."""
     return np.array([size_of(solution, name) for name in names])
+
+
+def check_width(key: str, solution: Solution, name: str, lo: float, hi: float) -> None:
+    """Raises ValueError where bounds are too wide for steps in them."""
+    size = size_of(solution, name)
+    if hi - lo > WIDEST * size:
+        raise ArgumentError(
+            not_allowed(key, [lo, hi], f"at most {WIDEST:g} times as wide as {name} is large, {size:.3g}")
+        )

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vibro_sweep.analysis.branches.sizes import check_width
 from vibro_sweep.analysis.branches.special import SpecialPoint, table_of
 from vibro_sweep.analysis.continuation.allowed_range import in_range
 from vibro_sweep.analysis.continuation.chatter import written_out
@@ -150,6 +151,8 @@ def bifurcation_curve(
     check_call("progress", progress, "progress(points, (p, q))", 0, (0.0, 0.0))
     virtual = checked_flag("virtual", virtual)
     start = start_at(special, names)
+    for name, ends in zip(names, limits, strict=True):
+        check_width(f"bounds.{name}", start.solution, name, *ends)
     curve = SolutionCurve(start, names, limits)
     curve, first = first_of(curve)
     if first is None:

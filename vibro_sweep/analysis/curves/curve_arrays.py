@@ -14,6 +14,7 @@ from vibro_sweep.analysis.branches.special import bare
 from vibro_sweep.analysis.continuation.starting_orbit import Start
 from vibro_sweep.analysis.curves.bifurcation_curve import BifurcationCurve
 from vibro_sweep.analysis.curves.curve_run import CurvePoint
+from vibro_sweep.analysis.curves.curve_start import slow_impacts
 from vibro_sweep.analysis.periodic.periodic_orbit import orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation.problem import GRAZE
@@ -106,14 +107,20 @@ def point_of_codimension_two(arrays: Arrays, index: int, names: Sequence[str], s
     parameters = dict(zip(names, map(float, arrays["special_value"][index]), strict=True))
     there = system.replace(**parameters)
     solution = solution_at(arrays, int(arrays["special_point"][index]), there)
+    touches, grazing = bool(arrays["special_touches"][index]), int(arrays["branch_grazing"])
     if index in (arrays["branch_begins"], arrays["branch_ends"]):  # perhaps the birth of a doubled or asymmetric orbit
-        solution = solution.reduced()
+        one = bare(solution, grazing) if touches and grazing >= 0 else solution
+        simpler = one.reduced(exact=False)  # Newton's method may fail there
+        solution = simpler if simpler.half_periods < solution.half_periods else solution
     kind = CODIMENSION_TWO[int(arrays["special_type"][index])].name
-    grazing = int(arrays["branch_grazing"])
     own, stop, impact = solution, None, None
     if 0 <= grazing < solution.K:
-        own, (stop, impact) = bare(solution, grazing), stop_and_impact(solution, grazing)
+        own = bare(solution, grazing)
+    elif not touches and slow_impacts(solution):
+        grazing = int(np.argmin(np.abs(solution.jumps)))
+    if 0 <= grazing < solution.K:
+        stop, impact = stop_and_impact(solution, grazing)
     return CurvePoint(
         kind, parameters, orbit_of(there, solution), own.multipliers, float(arrays["special_error"][index]),
-        stop=stop, impact=impact, curve=type_of(arrays), touches=bool(arrays["special_touches"][index]),
+        stop=stop, impact=impact, curve=type_of(arrays), touches=touches,
     )  # fmt: skip

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from vibro_sweep.analysis.branches.branch_run import stop_and_impact
+from vibro_sweep.analysis.branches.crossings import nearest_pair
 from vibro_sweep.analysis.branches.special import SpecialPoint, bare
 from vibro_sweep.analysis.branches.split_contacts import joined_contacts
 from vibro_sweep.analysis.continuation.chatter import chatter_at, with_impacts, written_out
@@ -214,9 +215,7 @@ class CurveRun:
         if event.index == TEST.pair:
             solution = w.solution(place)
             mu = (bare(solution, w.problem.index) if w.problem.kind == GRAZE else solution).multipliers
-            i, j = np.triu_indices(len(mu), 1)
-            k = np.argmin(np.abs(1 - mu[i] * mu[j]))
-            return bool(abs(mu[i[k]].imag) > 1e-9)
+            return bool(abs(nearest_pair(mu)[0].imag) > 1e-9)
         return True
 
     def _leave(self, a: Place, b: Place) -> None:

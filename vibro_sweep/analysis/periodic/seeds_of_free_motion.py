@@ -30,6 +30,16 @@ def touches_of_free_motion(free: Solution) -> list[tuple[float, int]]:
     return sorted((_time(q, swing, side, 0.0) % free.P, side) for side in sides)
 
 
+def with_first_touch(free: Solution) -> Solution | None:
+    """The free motion that touches both stops at once with one touch, that of a rigid stop before a compliant one and
+    of the left stop before the right one, so that rounding does not choose. None: it touches one, or is half an
+    orbit."""
+    if free.K or free.sigma == -1 or len(touches := touches_of_free_motion(free)) < 2:
+        return None
+    time, side = min(touches, key=lambda touch: (free.family.linear.is_compliant(touch[1]), touch[1]))
+    return free.with_touch(0, time, side)
+
+
 def from_free_motion(start: Solution) -> Solution | None:
     """The orbit with the contacts of `start` that the free motion would have; None where it has others, or none."""
     q = start.family.linear

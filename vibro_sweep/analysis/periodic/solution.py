@@ -260,8 +260,8 @@ class Solution:
             return None
         return found
 
-    def reduced(self) -> "Solution":
-        """The solution with its least period, and as half an orbit where it is symmetric."""
+    def reduced(self, exact: bool = True) -> "Solution":
+        """The solution with its least period, and as half an orbit where it is symmetric; exact: as of `part`."""
         family = self.family
         if self.K == 0:
             symmetric = family.linear.symmetric
@@ -269,12 +269,12 @@ class Solution:
         whole = self.whole()
         for count in repetitions(whole.sides):
             if whole.half_periods // 2 % count == 0:
-                found = whole.part(count, 1)
+                found = whole.part(count, 1, exact=exact)
                 if found is not None:
                     whole = found
                     break
         if self.family.linear.symmetric and whole.half_periods % 4 == 2 and is_mirrored(whole.sides):
-            half = whole.part(2, -1)
+            half = whole.part(2, -1, exact=exact)
             if half is not None:
                 return half
         return whole
