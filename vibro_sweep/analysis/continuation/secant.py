@@ -16,6 +16,7 @@ ASIDE = 1e-7  # of a secant: a zero found by polynomials is exact to far less
 LEAST = 1e-14  # of a secant, far below what rounding of tests leaves of a zero
 NOISE = 1e-11  # of a secant: nearer to a zero rounding of a test may lie
 COARSE = 1e3  # times both, of orbits of many impacts: their tests round by more, and each point takes long
+FINE = 1e-2  # length of a secant below which rounding is a larger share of it
 STEPS = 4
 ASTRAY = 3.0  # secants off the line: beyond it lies another piece of the curve
 BESIDE = (-3e-12, -1e-12, 0.0, 1e-12, 3e-12)  # of a secant, from the zero: so near that only rounding differs
@@ -48,8 +49,9 @@ class Secant:
     def __init__(self, curve: SolutionCurve, a: Place, b: Place, test: Callable[[Point], float]):
         self.curve, self.a, self.b, self.test = curve, a, b, test
         change = curve.difference(a, b)
-        self.row = change / np.linalg.norm(change)
-        self.coarse = COARSE if curve.K >= MANY else 1.0
+        length = np.linalg.norm(change)
+        self.row = change / length
+        self.coarse = (COARSE if curve.K >= MANY else 1.0) * max(1.0, FINE / length)
         self.seen = {0.0: a, 1.0: b}
 
     def value(self, share: float) -> float:
