@@ -18,6 +18,7 @@ from vibro_sweep.engine.continuation.workspace import Place
 ACROSS = 1e-5  # length, in phase, of a contact that has digits again
 LENGTHS = (1e-4, 1e-3, 1e-2)  # along a curve of grazes, in which the graze is looked for
 NEAR = 1e-2  # of the bounds, within which it lies
+FARTHER = (1.0, 2.0, 4.0, 8.0)  # times as far behind the graze as that place is before it: there may be no digits
 MOST = 32  # times that a run goes over a graze: rounding may lead it to and fro
 
 
@@ -56,11 +57,13 @@ class ShortContacts:
             return None
         self._left -= 1
         (x, p), guess = self._clear, self.curve.copied(graze)
-        guess.x[:], guess.p[:] = 2 * graze.x - x, 2 * graze.p - p
-        row = self.curve.unit_row(self.curve.difference(graze, guess))
-        beyond = self.curve.correct(guess, row)
-        if beyond is not None:
-            turned = np.sign(beyond.direction @ row)
-            beyond.tangent[:] *= turned
-            beyond.tangent_p[:] *= turned
-        return beyond
+        for farther in FARTHER:
+            guess.x[:], guess.p[:] = graze.x + farther * (graze.x - x), graze.p + farther * (graze.p - p)
+            row = self.curve.unit_row(self.curve.difference(graze, guess))
+            beyond = self.curve.correct(guess, row)
+            if beyond is not None:
+                turned = np.sign(beyond.direction @ row)
+                beyond.tangent[:] *= turned
+                beyond.tangent_p[:] *= turned
+                return beyond
+        return None
