@@ -45,8 +45,9 @@ def aside(curve: SolutionCurve, a: Place, b: Place, place: Place, share: float, 
 
 def crossed(curve: SolutionCurve, a: Place, b: Place, impact: int) -> tuple[float, Place, float] | None:
     """(share of the secant from a to b, place, error of its parameters) where this impulse vanishes; None where it does
-    so at a pole, there are no points beside it, or a critical orbit has a contact whose length the equations divide."""
-    if curve.problem.rests[impact] and FOLD <= curve.problem.kind <= TORUS:
+    so at a pole, there are no points beside it, or a fold or flip has a contact whose length the equations divide: the
+    curve of its grazes tells."""
+    if curve.problem.rests[impact] and FOLD <= curve.problem.kind < TORUS:
         return None
     secant = Secant(curve, a, b, lambda place: float(place.jumps[impact]))
     reach = REACH / curve.distance(a, b)

@@ -195,7 +195,8 @@ def locate(curve: SolutionCurve, event: Event, a: Place, b: Place) -> LocatedEve
     The error (`error_of`) is an estimate from several locations and from what rounding of the equations does.
     """
     if event.impact is not None and is_divided(curve, event.impact):
-        return _along_grazes(curve, event, a, b)
+        on_both = curve.problem.kind == TORUS and crossed(curve, a, b, event.impact)
+        return _along_grazes(curve, event, a, b) or (LocatedEvent(event, *on_both) if on_both else None)
     found = root(curve, a, b, event.test)
     settled = found is not None and found[1].tests[TEST.residual] <= SETTLED
     if event.impact is not None:

@@ -12,7 +12,8 @@ import numpy as np
 from vibro_sweep.analysis.continuation.events import LocatedEvent
 from vibro_sweep.analysis.continuation.point import Point
 from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve
-from vibro_sweep.analysis.curves.curve_events import SHORT, is_divided, on_grazes
+from vibro_sweep.analysis.curves.curve_events import SHORT, events_between, is_divided, locate, on_grazes
+from vibro_sweep.engine.continuation.problem import TORUS
 from vibro_sweep.engine.continuation.workspace import Place
 
 ACROSS = 1e-5  # length, in phase, of a contact that has digits again
@@ -44,11 +45,30 @@ class ShortContacts:
 
     def graze_beside(self, a: Place) -> LocatedEvent | None:
         """The graze, near a, of a contact whose length has no digits there."""
-        for i in self._divided:
-            found = on_grazes(self.curve, i, a, LENGTHS) if abs(a.jumps[i]) < ACROSS else None
+        for i in (i for i in self._divided if abs(a.jumps[i]) < ACROSS):
+            found = on_grazes(self.curve, i, a, LENGTHS) or self._between_both_sides(a, i)
             reach = NEAR * np.ptp(self.curve.bounds, axis=1)
             if found is not None and np.all(np.abs(found.place.p - a.p)[:2] <= reach):
                 return found._replace(event=replace(found.event, impact=i))
+        return None
+
+    def _between_both_sides(self, a: Place, contact: int) -> LocatedEvent | None:
+        """The graze between the last place with digits and one behind it: of a pair where multipliers jump, for which
+        curves of grazes have no test."""
+        if self._clear is None or self.curve.problem.kind != TORUS:
+            return None
+        guess = self.curve.copied(a)
+        guess.x[:], guess.p[:] = self._clear
+        clear = self.curve.correct(guess, a.direction)
+        if clear is None:
+            return None
+        towards = -clear.jumps[contact] / clear.direction[self.curve.K + contact]
+        for farther in FARTHER:
+            behind = self.curve.step(clear, (1 + farther) * towards)
+            for event in [] if behind is None else events_between(self.curve, clear, behind):
+                found = locate(self.curve, event, clear, behind) if event.impact == contact else None
+                if found is not None:
+                    return found
         return None
 
     def behind(self, graze: Place) -> Point | None:
