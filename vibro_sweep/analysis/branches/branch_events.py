@@ -172,10 +172,11 @@ def _beyond(boundary: float, side: int, inside: Point):
 
 
 def reflected(point: Point) -> float:
-    """prod_i (1 + mu_i)/(1 + |mu_i|^2)^(1/2), without factors that are zero at all points."""
+    """prod_i (1 + mu_i)/(1 + |mu_i|^2)^(1/2), of infinite ones 1 or -1, without factors that are zero at all points."""
     mu = point.solution.multipliers
-    factors = 1 + mu
-    return float(np.prod(factors[np.abs(factors) > ON_SQUARE]).real / np.prod(np.hypot(1, np.abs(mu))))
+    known = np.isfinite(mu)
+    factors, sizes = np.where(known, 1 + mu, np.sign(mu.real)), np.where(known, np.hypot(1, np.abs(mu)), 1.0)
+    return float(np.prod(factors[np.abs(factors) > ON_SQUARE]).real / np.prod(sizes))
 
 
 def torus_test(a: Point, b: Point) -> Test | None:
