@@ -55,8 +55,8 @@ BEYOND = 1.2  # times the reach of the plane, up to where its polynomials hold
 EARLY = 10  # points before which a curve is not yet taken to be closed
 KINK = 1e-3  # of the longest step: in which a branch may turn where a contact ends in another way
 FINE = 1e-6  # of the longest step: to that they are shortened where they go over to another branch
-COARSE = 0.03  # of the longest step: to that they are shortened where they do not distinguish pairs of multipliers, or
-# a test of a curve may vanish twice
+COARSE = 0.03  # of the longest step: to that they are shortened where they do not distinguish pairs of multipliers
+TWICE = 1e-3  # of the longest step: to that they are shortened where a test of a curve may vanish twice
 
 
 @jit
@@ -162,7 +162,7 @@ def take_steps(f, c, path, place, row, b):
         if over or (length > COARSE * path.longest and hides(path, a, place, length)):
             length *= 0.5
             continue
-        if min(length, path.before[0]) > COARSE * path.longest and may_pass_twice(path, c, a, place):
+        if min(length, path.before[0]) > TWICE * path.longest and may_pass_twice(path, c, a, place):
             length = go_back(path, length)
             continue
         touching = touches(path, c, a, place)
