@@ -1,5 +1,7 @@
 """Pairs of multipliers near the unit circle: slow ones, and two that pass one another."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from support.branches import same_points, types
@@ -7,7 +9,8 @@ from support.drawn_branches import Case
 from support.same_branch import follow
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.branches.branch_events import torus_test
+from vibro_sweep.analysis.branches.branch_events import reflected, torus_test
+from vibro_sweep.analysis.branches.crossings import nearest_pair
 from vibro_sweep.engine.impulses import pairs
 
 
@@ -62,3 +65,15 @@ def test_a_pair_that_another_one_pushes_over_the_circle_while_it_passes():
     assert inside == [True, True, True, False]
     assert pairs.coarse(before, here, there, 1.0, 1.0)
     assert not any(pairs.coarse(*passing(length)[:3], 1.0, 1.0) for length in (0.0015, 0.0005))
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("sign", [1, -1])
+def test_an_infinite_multiplier_is_the_limit_of_large_ones(sign):
+    """As beside the graze of a rigid stop, where another one is 0: their product is not a number."""
+    others = [0.5 + 0.8j, 0.5 - 0.8j, 0.0]
+    infinite, large = (np.array([sign * size, *others], complex) for size in (np.inf, 1e150))
+    tests = [reflected(SimpleNamespace(solution=SimpleNamespace(multipliers=mu))) for mu in (infinite, large)]
+    assert tests[0] == pytest.approx(tests[1], rel=1e-12) and tests[0] * sign > 0
+    assert {*nearest_pair(infinite)} == {*others[:2]}
+    assert np.isnan(nearest_pair(infinite[[0, 3]])).all()

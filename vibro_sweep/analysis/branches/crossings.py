@@ -103,8 +103,11 @@ def is_torus(point: Point) -> bool:
 
 
 def nearest_pair(mu: np.ndarray) -> tuple[complex, complex]:
-    """The two multipliers whose product is nearest to 1; beside a graze one may be infinite and another one 0."""
+    """The two multipliers whose product is nearest to 1, NaN where fewer than two are finite; beside a graze one may be
+    infinite and another one 0."""
     finite = mu[np.isfinite(mu)]
+    if len(finite) < 2:
+        return complex(np.nan), complex(np.nan)
     i, j = np.triu_indices(len(finite), 1)
     k = np.argmin(np.abs(1 - finite[i] * finite[j]))
     return finite[i[k]], finite[j[k]]

@@ -157,7 +157,8 @@ def bifurcation_curve(
     curve, first = first_of(curve)
     if first is None:
         raise ArgumentError(f"special: this {special.type} cannot be followed; it may belong to several curves at once")
-    if len(special.parameters) > 1 or special.type != start.type or touches_twice(curve, first):  # begin beside it
+    if len(special.parameters) > 1 or special.type != start.type or touches_twice(curve, first):
+        # a point of codimension two is seen by a run that passes it, not by one that begins there
         places = curve.beside(first)
         first = next((place for place in places if curve.is_real(place)), (places or [first])[0])
     if not (virtual or curve.is_real(first)):
