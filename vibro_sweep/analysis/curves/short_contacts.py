@@ -19,7 +19,7 @@ from vibro_sweep.engine.continuation.workspace import Place
 ACROSS = 1e-5  # length, in phase, of a contact that has digits again
 LENGTHS = (1e-4, 1e-3, 1e-2)  # along a curve of grazes, in which the graze is looked for
 NEAR = 1e-2  # of the bounds, within which it lies
-FARTHER = (1.0, 2.0, 4.0, 8.0)  # times as far behind the graze as that place is before it: there may be no digits
+BEHIND = (1.0, 2.0, 4.0, 8.0)  # times as far behind the graze as that place is before it: there may be no digits
 MOST = 32  # times that a run goes over a graze: rounding may lead it to and fro
 
 
@@ -63,7 +63,7 @@ class ShortContacts:
         if clear is None:
             return None
         towards = -clear.jumps[contact] / clear.direction[self.curve.K + contact]
-        for farther in FARTHER:
+        for farther in BEHIND:
             behind = self.curve.step(clear, (1 + farther) * towards)
             for event in [] if behind is None else events_between(self.curve, clear, behind):
                 found = locate(self.curve, event, clear, behind) if event.impact == contact else None
@@ -77,7 +77,7 @@ class ShortContacts:
             return None
         self._left -= 1
         (x, p), guess = self._clear, self.curve.copied(graze)
-        for farther in FARTHER:
+        for farther in BEHIND:
             guess.x[:], guess.p[:] = graze.x + farther * (graze.x - x), graze.p + farther * (graze.p - p)
             row = self.curve.unit_row(self.curve.difference(graze, guess))
             beyond = self.curve.correct(guess, row)
