@@ -15,7 +15,7 @@ from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.continuation.starting_orbit import Start
 from vibro_sweep.analysis.curves import curve_arrays as curves
 from vibro_sweep.analysis.curves.curve_arrays import point_of_codimension_two
-from vibro_sweep.analysis.curves.curve_run import CurvePoint
+from vibro_sweep.analysis.curves.curve_record import CurvePoint
 from vibro_sweep.analysis.curves.curve_switching import switch as curves_through
 from vibro_sweep.analysis.periodic.finding import periodic_orbit
 from vibro_sweep.analysis.periodic.lcp import born_at_grazing

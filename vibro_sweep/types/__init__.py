@@ -7,7 +7,7 @@ from vibro_sweep.analysis.branches.branch import Branch
 from vibro_sweep.analysis.branches.generations import FollowedBranch
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.curves.bifurcation_curve import BifurcationCurve
-from vibro_sweep.analysis.curves.curve_run import CurvePoint
+from vibro_sweep.analysis.curves.curve_record import CurvePoint
 from vibro_sweep.analysis.periodic.lcp import Born
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.analysis.single.discontinuity_map import DiscontinuityMap

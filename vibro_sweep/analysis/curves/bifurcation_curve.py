@@ -19,7 +19,8 @@ from vibro_sweep.analysis.continuation.recorded import Rows, both_directions
 from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve
 from vibro_sweep.analysis.curves import curve_text
 from vibro_sweep.analysis.curves.curve_points import dataset, dataset_from_file
-from vibro_sweep.analysis.curves.curve_run import CurvePoint, CurveRun
+from vibro_sweep.analysis.curves.curve_record import CurvePoint
+from vibro_sweep.analysis.curves.curve_run import CurveRun
 from vibro_sweep.analysis.curves.curve_start import start_at
 from vibro_sweep.analysis.periodic.one_thread import one_thread
 from vibro_sweep.analysis.periodic.orbit_portrait import portrait
@@ -169,13 +170,13 @@ def bifurcation_curve(
     down = CurveRun(curve, first, sign, system, progress, virtual)
     down.follow()
     if down.closed:
-        ends = down.special
-        return BifurcationCurve(start.type, names, ends, ends[-1], ends[-1], True, curve, down.points)
+        ends = down.record.special
+        return BifurcationCurve(start.type, names, ends, ends[-1], ends[-1], True, curve, down.record.points)
     up = CurveRun(curve, first, -sign, system, progress, virtual)
     up.follow()
-    ends = [*reversed(down.special), *up.special]
-    rows = both_directions(down.points, up.points)
-    return BifurcationCurve(start.type, names, ends, down.special[-1], up.special[-1], False, curve, rows)
+    ends = [*reversed(down.record.special), *up.record.special]
+    rows = both_directions(down.record.points, up.record.points)
+    return BifurcationCurve(start.type, names, ends, down.record.special[-1], up.record.special[-1], False, curve, rows)
 
 
 def touches_twice(curve: SolutionCurve, place: Place) -> bool:

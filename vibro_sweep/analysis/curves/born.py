@@ -32,7 +32,7 @@ from vibro_sweep.analysis.continuation.first_point import converge, first_place,
 from vibro_sweep.analysis.continuation.point import Point
 from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve, branch_through
 from vibro_sweep.analysis.continuation.starting_orbit import Start
-from vibro_sweep.analysis.curves.curve_run import CurvePoint
+from vibro_sweep.analysis.curves.curve_record import CurvePoint
 from vibro_sweep.analysis.curves.curve_start import as_special
 from vibro_sweep.analysis.curves.pair import in_phase, in_time, rates_of_pair, second_order
 from vibro_sweep.analysis.periodic.solution import Solution

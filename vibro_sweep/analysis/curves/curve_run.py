@@ -1,17 +1,13 @@
 """A run along a bifurcation curve in one direction: compiled steps, what they pass, and where the curve ends."""
 
 import math
-from dataclasses import dataclass, replace
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.branch_run import stop_and_impact
 from vibro_sweep.analysis.branches.crossings import nearest_pair
-from vibro_sweep.analysis.branches.special import SpecialPoint, bare
-from vibro_sweep.analysis.branches.split_contacts import joined_contacts
-from vibro_sweep.analysis.continuation.chatter import chatter_at, with_impacts, written_out
-from vibro_sweep.analysis.continuation.events import Event, LocatedEvent
-from vibro_sweep.analysis.continuation.recorded import Rows, join, rows_of
+from vibro_sweep.analysis.branches.special import bare
+from vibro_sweep.analysis.continuation.chatter import with_impacts, written_out
+from vibro_sweep.analysis.continuation.events import Event
 from vibro_sweep.analysis.continuation.secant import root
 from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve, copy
 from vibro_sweep.analysis.curves.curve_events import (
@@ -22,19 +18,13 @@ from vibro_sweep.analysis.curves.curve_events import (
     lies_at,
     without_echoes,
 )
+from vibro_sweep.analysis.curves.curve_record import CurveRecord
 from vibro_sweep.analysis.curves.ends import End, birth, birth_near, in_full, just_before, strong_resonance
-from vibro_sweep.analysis.curves.short_contacts import ShortContacts
-from vibro_sweep.analysis.curves.touch_at_contact import touch_at_contact
-from vibro_sweep.analysis.curves.vanishing_preload import without_preload
-from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit, orbit_of
-from vibro_sweep.analysis.periodic.solution import Solution
+from vibro_sweep.analysis.curves.singular_ends import end_where_steps_fail, preload_vanishes
 from vibro_sweep.engine.continuation import stepper
 from vibro_sweep.engine.continuation.curve_tests import NEAR_STRONG
-from vibro_sweep.engine.continuation.moving_flow import OMEGA
-from vibro_sweep.engine.continuation.path import Record
-from vibro_sweep.engine.continuation.problem import GRAZE, STICK, TORUS
+from vibro_sweep.engine.continuation.problem import GRAZE, TORUS
 from vibro_sweep.engine.continuation.workspace import TEST, THETA, Place, new_place
-from vibro_sweep.engine.impulses.flow import steady_motion
 
 FIRST_STEP = 1e-3
 CLOSE = 1e-6  # distance, in the units of a curve, from the first point where it comes back to it
@@ -42,50 +32,17 @@ SHORTER = 4  # times that the step over a boundary is halved
 MOST_POINTS = 50_000
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class CurvePoint(SpecialPoint):
-    """A point of codimension two on a bifurcation curve, or the end of one.
-
-    type : two bifurcations at once: cusp, fold_flip, ... (docs/how/curves.md); closed, boundary or failed
-    parameters : both, by their names
-    multipliers : of the half map where the orbit is symmetric; of a graze, of the orbit without the grazing impact
-    impact : index in `orbit.impacts` of one that has no speed there, or None
-    error : own estimate of the error of the parameters
-    curve : type of the curve that was followed
-    touches : whether a flight of `orbit` touches a stop
-
-    Examples
-    --------
-    >>> import vibro_sweep as vs
-    >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
-    >>> branch = vs.continue_orbit(vs.periodic_orbit(system, itinerary="R"), "b", (3.0, 4.5))
-    >>> curve = vs.bifurcation_curve(branch.special[1], ("b", "omega"), ((3.8, 4.5), (0.6, 0.66)))
-    >>> point = curve.special[1]
-    >>> point.type, {name: round(value, 8) for name, value in point.parameters.items()}
-    ('degenerate_neimark_sacker', {'b': 4.40040895, 'omega': 0.63389548})
-    """
-
-    curve: str = ""
-    touches: bool = False
-
-
 class CurveRun:
     """A run from the first point, forwards along its tangent or (sign = -1) backwards."""
 
     def __init__(self, curve: SolutionCurve, first: Place, sign: int, system, progress=None, virtual: bool = True):
-        self.curve, self.system, self.progress, self.virtual = curve, system, progress, virtual
+        self.curve, self.progress, self.virtual = curve, progress, virtual
         self.first = curve.copied(first)
         self.first.tangent[:] *= sign
         self.first.tangent_p[:] *= sign
-        self.special: list[CurvePoint] = []
-        self.rows: list[Rows] = []
+        self.record = CurveRecord(curve, system)
         self.closed = False
-        self._short = ShortContacts(curve)
-        self._add(self.first)
-
-    @property
-    def points(self) -> Rows:
-        return join(self.rows)
+        self.record.add(self.first)
 
     def follow(self) -> None:
         """Follow the curve to its end."""
@@ -99,7 +56,7 @@ class CurveRun:
             path.counts[0] = passed
             reason, count = w.take_steps(b), int(path.counts[1])
             passed += count
-            self._keep(path.record, count)
+            self.record.keep(path.record, count)
             if self.progress is not None:
                 self.progress(passed, tuple(map(float, a.p[:2])))
             if reason == stepper.FAR:
@@ -114,14 +71,14 @@ class CurveRun:
                 return
             elif reason in (stepper.CLOSED, stepper.LEFT) and closes(w, a, b, self.first):
                 self.closed = True
-                self.special.append(self._at("closed", self.first, np.nan))
+                self.record.add_special("closed", self.first, np.nan)
                 return
             elif reason in (stepper.EVENT, stepper.CLOSED, stepper.LEFT):
                 if self._ends(a, b, reason != stepper.LEFT):
                     return
                 if not passable(w, b):
                     break
-                if self._short.are_lost(a, b):
+                if self.record.short.are_lost(a, b):
                     beyond = self._over_graze(a)
                     if beyond is None:
                         break
@@ -138,8 +95,8 @@ class CurveRun:
         end = birth_near(w, a) if w.problem.repeats or w.problem.mirrors else None
         if end is not None:
             self._end(end)
-        elif not (self._join_contacts(a) or self._touch_contact(a) or self._lose_preload(a) or self._reach_graze(a)):
-            self.special.append(self._at("failed", a, np.nan))
+        else:
+            end_where_steps_fail(self.record, a)
 
     def _write_out(self, a: Place) -> bool:
         """Go on with as many impacts of the chatter sequence as are needed at a."""
@@ -152,25 +109,8 @@ class CurveRun:
             return False
         copy(with_impacts(self.curve, self.curve.path.first, w.K)[1], w.path.first)
         copy(place, w.path.a)
-        self.curve = w
+        self.curve = self.record.curve = w
         return True
-
-    def _keep(self, record: Record, count: int) -> None:
-        if count:
-            r = Record(*(values[:count] for values in record))
-            self._record(r.x, r.motion, r.p, r.tests, r.omega)
-
-    def _add(self, place: Place) -> None:
-        w = self.curve
-        w.assemble(place)
-        motion, omega = w.workspace.events["motion"][None], w.planes[0]["numbers"][OMEGA, None]
-        self._record(place.x[None], motion, place.p[None], place.tests[None], omega)
-
-    def _record(self, x, motion, p, tests, omega) -> None:
-        w = self.curve
-        self._short.keep(x, p)
-        state = x[:, 0, : w.n] * w.state_units
-        self.rows.append(rows_of(w, x, motion, p, tests, omega, w.tau, state))
 
     def _pass(self, a: Place, b: Place, leaves: bool = False) -> bool:
         """Record what lies between a and b where the orbit is real, then b. Whether the curve goes on from there.
@@ -184,26 +124,18 @@ class CurveRun:
         if leaves:
             found = [one for one in found if not lies_at(w, one, b)]
         for one in found:
-            self._add(one.place)
-            if self._holds(one.event, one.place, *beside(w, a, b, one, found)) and not self._is_known(one):
-                self.special.append(self._at(one.event.type, one.place, one.error, one.event))
+            self.record.add(one.place)
+            if self._holds(one.event, one.place, *beside(w, a, b, one, found)) and not self.record.knows(one):
+                self.record.add_special(one.event.type, one.place, one.error, one.event)
                 if ends and (one.event.impact is not None or one.event.touches):
                     return False
                 if one.event.type in ENDS_OF_CONTACTS:
                     return False
         if ends:  # at a place that could not be located
-            self.special.append(self._at("failed", a, np.nan))
+            self.record.add_special("failed", a, np.nan)
             return False
-        self._add(b)
+        self.record.add(b)
         return True
-
-    def _is_known(self, one: LocatedEvent) -> bool:
-        """Whether rounding of a test, which changes its sign more than once, does not tell this from a known point."""
-        return one.event.index is not None and any(
-            known.type == one.event.type
-            and np.all(np.abs(one.place.p[:2] - list(known.parameters.values())) <= one.error + known.error)
-            for known in self.special
-        )
 
     def _holds(self, event: Event, place: Place, a: Place, b: Place) -> bool:
         """Whether this is a bifurcation of a motion, real there or at the edge of what is real; no neutral saddle."""
@@ -225,12 +157,12 @@ class CurveRun:
         passed = [(j, boundary) for j, boundary, side in sides if (b.p[j] - boundary) * side > 0]
         found = [place for j, boundary in passed if (place := self._at_boundary(a, b, j, boundary)) is not None]
         if not found:
-            if not self._lose_preload(a):
-                self.special.append(self._at("failed", a, np.nan))
+            if not preload_vanishes(self.record, a):
+                self.record.add_special("failed", a, np.nan)
             return
         place = min(found, key=lambda one: max((one.p[j] - boundary) * side for j, boundary, side in sides))
         if not self._ends(a, place, False) and self._pass(a, place, leaves=True):
-            self.special.append(self._at("boundary", place, 0.0))
+            self.record.add_special("boundary", place, 0.0)
 
     def _at_boundary(self, a: Place, b: Place, j: int, boundary: float) -> Place | None:
         """The point where a parameter is at its boundary; the curve may be nearly parallel to that side of the
@@ -272,93 +204,25 @@ class CurveRun:
         """The end, on the curve of another orbit."""
         other, found = end.curve, end.found
         w, solution, p = self.curve, in_full(self.curve, end), found.place.p.copy()
-        self.special.append(self._at(found.event.type, found.place, found.error, found.event, other))
+        self.record.add_special(found.event.type, found.place, found.error, found.event, other)
         if w.problem.kind == TORUS:
-            p[THETA] = round(self.points.p[-1, THETA] / np.pi) * np.pi
-        self._add_solution(p, solution)
-
-    def _join_contacts(self, a: Place) -> bool:
-        """End where two contacts become one beside a. False: there are none."""
-        found = joined_contacts(self.curve, self.curve.solution(a), float(a.p[THETA]))
-        if found is None:
-            return False
-        (event, _, place, error), both = found
-        self._add_solution(place.p.copy(), both)
-        point = self._at("split", place, error, event, place.curve)
-        self.special.append(replace(point, orbit=orbit_of(point.orbit.system, both)))
-        return True
-
-    def _touch_contact(self, a: Place) -> bool:
-        """End where the touch of a curve of grazes comes to the contact beside it. False: it does not."""
-        found = touch_at_contact(self.curve, a)
-        if found is None:
-            return False
-        self._add(found[0])
-        self.special.append(self._at("split", *found))
-        return True
-
-    def _lose_preload(self, a: Place) -> bool:
-        """End where a contact beside a vanishes together with the preload of its stop. False: there is none."""
-        place = without_preload(self.curve, self.curve.solution(a), a.p)
-        if place is None:
-            return False
-        self._add_solution(np.append(place.p[:2], a.p[THETA]), place.solution)
-        self.special.append(self._at("boundary", place, 0.0, curve=place.curve))
-        return True
+            p[THETA] = round(self.record.points.p[-1, THETA] / np.pi) * np.pi
+        self.record.add_solution(p, solution)
 
     def _over_graze(self, a: Place) -> Place | None:
         """The curve behind the graze of a contact whose length has no digits at a; the graze is recorded. None: there
         is none, or the curve ends there."""
-        found = self._short.graze_beside(a)
+        found = self.record.short.graze_beside(a)
         if found is None:
             return None
-        beyond = self._short.behind(found.place)
+        beyond = self.record.short.behind(found.place)
         if beyond is None or not (self.virtual or self.curve.is_real(beyond)):
             return None
         beyond.tests[TEST.length] = a.tests[TEST.length]
         if self.curve.is_real(a) or self.curve.is_real(beyond):
-            self._add_found(found)
-        self._add(beyond)
+            self.record.add_event(found)
+        self.record.add(beyond)
         return beyond
-
-    def _reach_graze(self, a: Place) -> bool:
-        """End at the graze of such a contact. False: none is beside a."""
-        found = self._short.graze_beside(a)
-        if found is not None:
-            self._add_found(found)
-        return found is not None
-
-    def _add_found(self, found: LocatedEvent) -> None:
-        self._add(found.place)
-        self.special.append(self._at(found.event.type, found.place, found.error, found.event))
-
-    def _add_solution(self, p: np.ndarray, s: Solution) -> None:
-        """Record an orbit that is not of this curve."""
-        w, q = self.curve, s.family.linear
-        later, motion = (q.tau - w.tau) / q.omega, s.motion[:, :2]
-        h = s.states[0, : w.n] - steady_motion(q, s.times[0])
-        values = p, s.times + later, s.jumps, s.ends + later, motion, np.array(s.stop_distance), np.array(s.change), h
-        self.rows.append(Rows(*(value[None].copy() for value in values)))
-
-    def _at(self, of_type, place: Place, error: float, event: Event | None = None, curve=None) -> CurvePoint:
-        w = curve or self.curve
-        solution = w.solution(place)
-        parameters = dict(zip(w.names, map(float, place.p[:2]), strict=True))
-        if w.problem.kind == STICK:
-            orbit, stop = PeriodicOrbit(self.system.replace(**parameters), "sticking"), w.orbit.sides[-1]
-            return CurvePoint(
-                of_type, parameters, orbit, np.empty(0, complex), error, stop=stop, curve=w.start.type,
-                _chatter=chatter_at(w, place, event is not None and event.touches),
-            )  # fmt: skip
-        orbit = orbit_of(self.system.replace(**parameters), solution)
-        grazes = w.problem.kind == GRAZE
-        index = w.problem.index if grazes else event.impact if event is not None else None
-        stop, impact = (None, None) if index is None else stop_and_impact(solution, index)
-        multipliers = bare(solution, w.problem.index).multipliers if grazes else solution.multipliers
-        return CurvePoint(
-            of_type, parameters, orbit, multipliers, error, impact=impact, stop=stop, curve=w.start.type,
-            touches=event is not None and event.touches,
-        )  # fmt: skip
 
 
 def outside_between(curve: SolutionCurve, a: Place, b: Place) -> Place | None:

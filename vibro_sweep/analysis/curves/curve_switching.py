@@ -13,7 +13,7 @@ from vibro_sweep.analysis.continuation.first_point import first_place
 from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve
 from vibro_sweep.analysis.continuation.starting_orbit import Start
 from vibro_sweep.analysis.curves.born import born, box_around
-from vibro_sweep.analysis.curves.curve_run import CurvePoint
+from vibro_sweep.analysis.curves.curve_record import CurvePoint
 from vibro_sweep.analysis.curves.curve_start import as_special, slow_impacts
 from vibro_sweep.analysis.periodic.linearised import Linearised
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
