@@ -8,7 +8,8 @@ from support import slow_cases
 from support.beside_grazes import study
 
 # Seeds whose graze was once taken for another one, or lost, from a start 1e-6 to 1e-11 beside it.
-ONCE_LOST = [("rigid", 21), ("rigid", 46), ("rigid", 74), ("compliant", 1180)]
+THREE_MASSES = slow_cases(("rigid", 74))  # each number of masses compiles kernels of its own
+ONCE_LOST = [("rigid", 21), ("rigid", 46), *THREE_MASSES, ("compliant", 1180)]
 
 
 @pytest.mark.parametrize("stops, seed", ONCE_LOST)

@@ -88,6 +88,7 @@ def test_curves_of_doubled_orbits_with_contacts_begin_at_a_degenerate_flip(soft_
         assert any(one == pytest.approx(point.parameters, rel=1e-8) for one in ends)
 
 
+@pytest.mark.slow  # three masses, whose kernels no fast test compiles
 def test_the_orbit_beside_a_graze_comes_to_it():
     """A flip 4.7e-5 away: at the first step beside the graze Newton's method finds the orbit of half the period."""
     system = vs.Oscillator.named(

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from support import compliant_curves
+from support import compliant_curves, slow_cases
 from support.compliant_branches import drawn_case, follow
 
 import vibro_sweep as vs
@@ -10,6 +10,7 @@ from vibro_sweep.analysis.curves.curve_arrays import arrays_of, curve_of
 from vibro_sweep.analysis.curves.curve_search import Curves, seed_at
 
 
+@pytest.mark.slow  # four masses, whose kernels no fast test compiles
 def test_a_curve_that_begins_at_a_flip_has_its_contacts_where_the_phase_of_the_force_moves():
     """With tau = "grazing" an end has a phase of the force of its own; half of its doubled orbit is as it was."""
     special = next(one for one in follow(drawn_case(194)).special if one.type == "graze")
@@ -38,7 +39,10 @@ def test_curves_of_contacts_come_back_from_files_and_know_their_own_points(tmp_p
     assert Curves(names, bounds, ()).passes(arrays_of(curve), seed_at(flip, names))
 
 
-@pytest.mark.parametrize("seed, types", [(6, {"closed"}), (8, {"flip_graze"}), (26, {"resonant_graze"})])
+THREE_MASSES = slow_cases((6, {"closed"}))  # each number of masses compiles kernels of its own
+
+
+@pytest.mark.parametrize("seed, types", [*THREE_MASSES, (8, {"flip_graze"}), (26, {"resonant_graze"})])
 def test_points_of_codimension_two_are_the_same_from_their_arrays(seed, types):
     """Those at the birth of doubled orbits, where a touch vanishes, and where a curve comes back to its first point."""
     case, met = drawn_case(seed), set()
