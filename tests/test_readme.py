@@ -26,6 +26,7 @@ SLOW = (
     "docs/how/explore.md",
     "docs/development/architecture.md",
 )
+ENDING = "for job in $(jobs -p | tac); do kill $job; wait $job || true; done"  # a worker waits 8 s for its scheduler
 NETWORK = "ip link set lo up\nip addr add dev lo 10.0.0.1\n"  # the address of docs/how/cluster.md
 
 # What these pages take from other packages, where these are not installed; workers of this machine in their place.
@@ -90,10 +91,10 @@ def test_page_twice(tmp_path, name):
         "PATH": os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]]),
         "PYTHONPATH": str(tmp_path / "stand_ins"),
     }
-    for _ in "twice":
+    for _ in range(2):
         for language, text in PAGES[name]:
             network = NETWORK if namespace else ""
-            ending = "trap 'kill $(jobs -p) 2>/dev/null || true' EXIT"
+            ending = f"trap '{ENDING}' EXIT"
             script = f"set -e\n{network}{ending}\n{command_of(language, text)}\n"
             done = subprocess.run(
                 [*namespace, "bash", "-c", script],
