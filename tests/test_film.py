@@ -52,7 +52,7 @@ def test_files(data, tmp_path, few, suffix):
             vs.plot(data, output=tmp_path / "film.mp4")
         return
     place = tmp_path / f"film{suffix}"
-    for _ in "twice":
+    for _ in range(2):
         vs.plot(data, at={"b": 4.0}, dpi=60, output=place)
     if suffix == ".gif":
         with Image.open(place) as moving:
