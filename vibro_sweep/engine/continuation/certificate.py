@@ -8,7 +8,7 @@ from vibro_sweep.engine.continuation.chatter_sum import NEXT
 from vibro_sweep.engine.continuation.flight_tables import polynomial
 from vibro_sweep.engine.continuation.lasting import leaves_slowly, speed_after, take_releases
 from vibro_sweep.engine.continuation.lasting_event import hold_of
-from vibro_sweep.engine.continuation.moving_flow import HIGH, LOW, OMEGA
+from vibro_sweep.engine.continuation.moving_flow import HIGH, LOW, OMEGA, expand_gap, shift
 from vibro_sweep.engine.continuation.problem import GRAZE, STICK
 from vibro_sweep.engine.impulses.extremes import OVERLAP, extremes_of_cell, turns_near
 from vibro_sweep.engine.impulses.taylor_orders import ORDER
@@ -52,18 +52,6 @@ def may_turn(f, y, e, low, high, nearest):
     p0, p1 = p0 + (swing * f.swing[0]).real, p1 + (swing * f.swing[1]).real
     p2, p3 = p2 + (swing * f.swing[2]).real, p3 + (swing * f.swing[3]).real
     return turns_near(p0, p1, p2, p3, rest, low, high, nearest)
-
-
-@jit
-def shift(f, table, y, other):
-    """y <- table (y, 1)."""
-    n = f.A.shape[0]
-    for r in range(n):
-        other[r] = table[r, n]
-        for k in range(n):
-            other[r] += table[r, k] * y[k]
-    for r in range(n):
-        y[r] = other[r]
 
 
 @jit
@@ -125,15 +113,3 @@ def apart(f, y, e, length, cell):
             break
         u *= 0.5
     return u
-
-
-@jit
-def expand_gap(f, y, e, cell):
-    """The gap's Taylor coefficients from the state y, where the steady motion is Re(Z e)."""
-    n, omega, swing = f.A.shape[0], f.numbers[OMEGA], f.Z[0] * e
-    for q in range(ORDER + 1):
-        total = f.series[q, 0, n]
-        for r in range(n):
-            total += f.series[q, 0, r] * y[r]
-        cell[q] = total + swing.real
-        swing *= 1j * omega / (q + 1)

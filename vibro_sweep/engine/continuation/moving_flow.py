@@ -231,3 +231,27 @@ def move_to(f, p, q):
     """Numbers and tables at the parameters (p, q)."""
     fit_at(f, p, q)
     return spread(f)
+
+
+@jit
+def shift(f, table, y, other):
+    """y <- table (y, 1)."""
+    n = f.A.shape[0]
+    for r in range(n):
+        other[r] = table[r, n]
+        for k in range(n):
+            other[r] += table[r, k] * y[k]
+    for r in range(n):
+        y[r] = other[r]
+
+
+@jit
+def expand_gap(f, y, e, cell):
+    """The gap's Taylor coefficients from the state y, where the steady motion is Re(Z e)."""
+    n, omega, swing = f.A.shape[0], f.numbers[OMEGA], f.Z[0] * e
+    for q in range(ORDER + 1):
+        total = f.series[q, 0, n]
+        for r in range(n):
+            total += f.series[q, 0, r] * y[r]
+        cell[q] = total + swing.real
+        swing *= 1j * omega / (q + 1)

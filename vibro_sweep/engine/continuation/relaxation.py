@@ -5,19 +5,24 @@ a preload, less with one, which brings it to 0 at D = (c/k) ln(1 + k d/p). The n
 rest where D is longer than that, or than what takes exp(-k D/c) (1 + k/(c omega)) below rounding.
 """
 
+import cmath
 import math
 
 import numpy as np
 
-from vibro_sweep.engine.continuation.moving_flow import OMEGA, law_at
+from vibro_sweep.engine.continuation.moving_flow import OMEGA, expand_gap, law_at, shift
+from vibro_sweep.engine.impulses.taylor_orders import ORDER
 from vibro_sweep.engine.simd.jit import small
 
 DIGITS = 53 * math.log(2.0)
+PER_TIME_CONSTANT, PER_CELL = 8.0, 4.0  # places at which the distance of mass and stop is looked at
+HALVINGS = 40  # of such a step, in which it is least
 
 
 @small
 def time_to_spare(f, c, place, b):
-    """The least time between a release by force and the next touch of that stop, over what it has to be, less 1."""
+    """The least time between a release by force and the next touch of that stop, over what it has to be, less 1; below
+    0 too where the stop comes to the mass that has left it."""
     K, n, omega, least = len(place.x), f.A.shape[0], f.numbers[OMEGA], np.inf
     if f.by_force == 0:
         return least
@@ -31,7 +36,64 @@ def time_to_spare(f, c, place, b):
                 needed = min(needed, math.log(1.0 + f.values[law] * depth / preload))
             time = (next_touch(f, c, place, i) - place.x[i, n] - place.x[i, n + 1]) / omega
             least = min(least, rate * time / needed - 1.0)
+            least = min(least, least_distance(f, place, b, i, c.sides[i], min(needed / rate, b.events[i].length)))
     return least
+
+
+@small
+def least_distance(f, place, b, i, side, time):
+    """The least of s - delta, over the depth at the release, where it has a minimum in this time before the mass comes
+    out of the stop; inf: nowhere."""
+    n, e, work, law, omega = f.A.shape[0], b.events[i], b.work[0], law_at(f, side), f.numbers[OMEGA]
+    rate, preload = f.values[law] / f.values[law + 1], f.values[law + 2]
+    rest = preload / f.values[law] if preload > 0.0 else 0.0
+    y, cell, least, begin = work.flying[0], work.cell, np.inf, place.x[i, n] + place.x[i, n + 1]
+    step = f.width / max(PER_CELL, PER_TIME_CONSTANT * rate * f.width)
+    for r in range(n):
+        y[r] = e.after[r]
+    base, origin, closing = 0.0, 0.0, False  # base: where the cell begins
+    while base < time:
+        expand_gap(f, y, cmath.exp(1j * (begin + omega * base)), cell)
+        if base == 0.0:
+            origin, cell[1] = cell[0], -side * rate * (e.depth + rest)
+        u = 0.0
+        while u < min(f.width, time - base):
+            to = min(u + step, f.width, time - base)
+            if rate_apart(side, rate, e.depth + rest, cell, base, to) < 0.0:
+                closing = True
+            elif closing:
+                closing, low, high = False, u, to
+                for _ in range(HALVINGS):
+                    middle = 0.5 * (low + high)
+                    if rate_apart(side, rate, e.depth + rest, cell, base, middle) < 0.0:
+                        low = middle
+                    else:
+                        high = middle
+                place_of_stop = (e.depth + rest) * math.exp(-rate * (base + high)) - rest
+                least = min(least, (place_of_stop - e.depth - side * (gap_at(cell, high) - origin)) / e.depth)
+            if e.depth + side * (gap_at(cell, to) - origin) < 0.0:
+                return least
+            u = to
+        shift(f, f.powers[0], y, work.flying[1])
+        base += f.width
+    return least
+
+
+@small
+def gap_at(cell, u):
+    total = cell[ORDER]
+    for q in range(ORDER - 1, -1, -1):
+        total = total * u + cell[q]
+    return total
+
+
+@small
+def rate_apart(side, rate, scale, cell, base, u):
+    """The rate of s - delta at the time u of the cell that begins at `base`."""
+    total = ORDER * cell[ORDER]
+    for q in range(ORDER - 1, 0, -1):
+        total = total * u + q * cell[q]
+    return -rate * scale * math.exp(-rate * (base + u)) - side * total
 
 
 @small

@@ -51,10 +51,12 @@ def start_in_two(t, i):
 
 @inline
 def add_log(t, j, i, more, low=0.0):
-    """Let vector j grow by this logarithm, and what rounding leaves of it, where there are compliant stops."""
-    t.logs[j, i], t.low[j, i] = add(t.logs[j, i], t.low[j, i], more, low)
-    if t.logs[j, i] == -np.inf:
-        t.low[j, i] = 0.0
+    """Let vector j grow by this logarithm, and what rounding leaves of it, where there are compliant stops; -inf: by
+    nothing."""
+    if min(t.logs[j, i], more) == -np.inf:  # of which there is no rounding
+        t.logs[j, i], t.low[j, i] = -np.inf, 0.0
+    else:
+        t.logs[j, i], t.low[j, i] = add(t.logs[j, i], t.low[j, i], more, low)
 
 
 @noinline
