@@ -114,3 +114,32 @@ if __name__ == "__main__":
         reports.append(function(seed))
         print(reports[-1], flush=True)
     print("\n".join((compliant_sums if sums else compliant_exponents).table(reports)))
+
+
+@pytest.mark.parametrize("release", ["displacement", "force"])
+def test_exponents_where_a_rigid_stop_loses_dimensions(release):
+    """R = 0 on the other side: -inf, and what a small difference decays by."""
+    system = vs.Oscillator.named(
+        "one_mass", k=2.385, zeta=0.013, F=0.2096, omega=1.52, R=0.0, k_stop_left=721.0, b=0.366, tau=0.0,
+        release=release,
+    )  # fmt: skip
+    row = vs.sweep(system, {"omega": [1.52]}, transient=600, record=100).isel(omega=0)
+    assert row.status == 0 and row.period == 1 and row.lyapunov[-1] == -np.inf
+    start = vs.simulate(system, (0, 0), 600).section[-1]
+    beside = vs.simulate(system, start + np.array([1e-6, 0.0]), 3).section - start
+    decays = np.log(np.linalg.norm(beside[2]) / np.linalg.norm(beside[1])) / (2 * np.pi / system.omega)
+    assert float(row.lyapunov[0]) == pytest.approx(decays, abs=1e-4)
+
+
+def test_exponents_where_a_mass_rests_on_the_rigid_stop():
+    """After chatter: two dimensions are lost, and in the plane of the others small differences grow as they say."""
+    system = vs.System(mu_m=1.2756, mu_k=1.8346, zeta=0.12786, f2=0, omega=1.9463, R=0.12, b=0.2294, k_stop_left=1745.5)
+    row = vs.sweep(system, {"b": [0.2294]}, transient=600, record=100).isel(b=0)
+    assert row.status == 0 and np.all(row.lyapunov[2:] == -np.inf)
+    start = vs.simulate(system, (0, 0, 0, 0), 600).section[-1]
+    beside = np.array([vs.simulate(system, start + 1e-6 * one, 2).section - start for one in np.eye(4)])
+    once, twice = beside[:, 1], beside[:, 2]
+    plane = np.linalg.svd(once)[2][:2]
+    turned = np.linalg.lstsq(once @ plane.T, twice @ plane.T)[0]
+    expected = np.log(np.abs(np.linalg.eigvals(turned))) * system.omega / (2 * np.pi)
+    assert np.sort(row.lyapunov.values[:2]) == pytest.approx(np.sort(expected), abs=1e-3)

@@ -71,3 +71,10 @@ def test_orbits_with_contacts_of_too_many_steps_are_not_computed():
         "one_mass", k=1, zeta=0.05, F=0.5, omega=0.8, k_stop=1e8, c_stop=1e9, b=1, stops="right", tau=0.0
     )
     assert str(vs.periodic_orbit(system, itinerary="R").status) == "too_stiff"
+
+
+@pytest.mark.parametrize("numbers", [{"k_stop": 1e160, "c_stop": 0}, {"k_stop": 1, "c_stop": 1e160}], ids=str)
+def test_stops_whose_rates_are_beyond_all_say_so(numbers):
+    system = SYSTEM.replace(**numbers)
+    assert vs.simulate(system, (0, 0), 10).status == "not_finite"
+    assert vs.periodic_orbit(system, itinerary="R").status == "too_stiff"

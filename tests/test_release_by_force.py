@@ -179,3 +179,21 @@ def test_windows_of_a_rubber_stop():
             inside = vs.simulate(system.replace(omega=value), end.orbit.state, 2000 * one.period)
             last = inside.section[-1], inside.section[-1 - one.period]
             assert np.abs(last[0] - last[1]).max() < 1e-3
+
+
+def test_an_orbit_whose_mass_meets_its_stop_again_before_it_is_out_is_none():
+    """The stop relaxes faster than the mass moves on. The branch went on as ok, and windows with it, up to 56.84."""
+    system = vs.Oscillator.named(
+        "one_mass", k=1.0, zeta=0.21946461644074794, F=1.4480217615475175, omega=1.624381452744489,
+        R=0.5119483099802649, k_stop_left=391.3381999367444, c_stop_left=50.0, preload_left=0.18166495017546266,
+        b=0.7118563659162448, tau=1.3880336099211246, release="force",
+    )  # fmt: skip
+    branch = vs.continue_orbit(vs.periodic_orbit(system, itinerary="LR"), "c_stop_left", (45.0, 70.0))
+    end = branch.ends
+    assert end.type == "unrelaxed" and end.error < 1e-10
+    last = end.parameters["c_stop_left"]
+    for beyond, contacts in ((-1e-6, 1), (1e-6, 2)):
+        there = system.replace(c_stop_left=last + beyond)
+        flown = vs.simulate(there, end.orbit.state, 1)
+        assert len(flown.contacts) == contacts
+        assert vs.periodic_orbit(there, itinerary="LR").status == ("ok" if contacts == 1 else "unrelaxed")

@@ -1,5 +1,7 @@
 """The tables of one system, and the motion of eight of its orbits: the base of `simulate` and `PeriodMap`."""
 
+import sys
+
 import numpy as np
 
 from vibro_sweep.engine import points
@@ -120,6 +122,9 @@ def point_of_one(system, later: float) -> tuple[np.ndarray, Kind]:
     return any_points(one, kind), kind
 
 
+SHORTEST = sys.float_info.min  # step of a contact: that of the stiffest is below
+
+
 class Engine:
     """The tables of one system, and the motion of eight orbits, of which `orbit` is the first.
 
@@ -178,7 +183,7 @@ class Engine:
     def steps(self) -> int:
         """Of a period at most: its cells, or the steps of contacts that last."""
         law = self.ensemble.law
-        fine = 1.0 if law is None else max(self.width / float(law.orbits["step"][0].min()), 1.0)
+        fine = 1.0 if law is None else max(self.width / max(float(law.orbits["step"][0].min()), SHORTEST), 1.0)
         return int(min(self.cells * fine, 1e18))
 
     @property

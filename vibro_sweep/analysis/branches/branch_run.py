@@ -23,7 +23,7 @@ from vibro_sweep.analysis.continuation.solution_curve import SHORTEST_STEP, Solu
 from vibro_sweep.analysis.continuation.starting_orbit import KINDS
 from vibro_sweep.analysis.periodic.contact_numbers import is_smooth
 from vibro_sweep.analysis.periodic.periodic_orbit import orbit_of
-from vibro_sweep.analysis.periodic.seeds_of_free_motion import with_first_touch
+from vibro_sweep.analysis.periodic.seeds_of_free_motion import touching_at_once
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation import stepper
 from vibro_sweep.engine.continuation.problem import FLIP, TORUS
@@ -240,7 +240,7 @@ class BranchRun:
             return True
         self._add(last)
         if end:
-            if turns_at(self.curve, end.event):
+            if end.event.type == "graze":
                 self._forget_beside(last.value, end.error)
             self.special.append(self._end(end.event, last, end.error))
         return end is not None
@@ -292,8 +292,8 @@ class BranchRun:
             first = orbit_of(None, point.solution)._canonical_frame[0]
             index = min(vanishing(point.solution, index).tolist(), key=lambda i: (i - first) % point.solution.K)
         try:
-            touching = with_first_touch(point.solution) if index is None else None
-            graze = graze_at(point.solution, self.name, index, touching)
+            touching = (touching_at_once(point.solution) if index is None else None) or ()
+            graze = graze_at(point.solution, self.name, index, *touching)
         except np.linalg.LinAlgError:  # a fold of the orbits without the impact as well: no slopes
             return self._at("failed", point, error or math.nan)
         side = graze.touching.sides[graze.index]

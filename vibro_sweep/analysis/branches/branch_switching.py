@@ -10,9 +10,10 @@ from vibro_sweep.analysis.branches.sizes import size_of
 from vibro_sweep.analysis.branches.special import Graze, SpecialPoint, graze_at, slopes
 from vibro_sweep.analysis.branches.split_contacts import in_two, set_apart
 from vibro_sweep.analysis.continuation.solution_curve import branch_through
+from vibro_sweep.analysis.periodic.contact_numbers import impulse_by_speed, is_smooth, one_plus_R, preload
 from vibro_sweep.analysis.periodic.joined_contacts import contacts_are_one, without_flights
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit, found_orbit
-from vibro_sweep.analysis.periodic.seeds_of_free_motion import touches_of_free_motion
+from vibro_sweep.analysis.periodic.seeds_of_free_motion import touches_of_free_motion, with_touches
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.model.arguments import check_type
 from vibro_sweep.model.bifurcations import BY_NAME, WAYS
@@ -61,13 +62,7 @@ def _beyond_graze(special: SpecialPoint) -> list[Solution | None]:
     both = touches_of_free_motion(free)
     if len(both) < 2:
         return [_beside(parent, name, None)]
-    return [_beside(free, name, None, _with_touches(free, some)) for some in (both, both[:1], both[1:])]
-
-
-def _with_touches(free: Solution, touches: list[tuple[float, int]]) -> Solution:
-    for index, (time, side) in enumerate(touches):
-        free = free.with_touch(index, time, side)
-    return free
+    return [_beside(free, name, None, with_touches(free, some)) for some in (both, both[:1], both[1:])]
 
 
 def _beyond_split(special: SpecialPoint) -> list[Solution | None]:
@@ -140,20 +135,25 @@ def _beside(solution: Solution, name: str, impact: int | None, touching: Solutio
 
 
 def pressed(graze: Graze, step: float) -> np.ndarray:
-    """The unknowns of the orbit with short contacts, where the parameter is beyond the graze by `step`.
+    """The unknowns of the orbit with all that touch, where the parameter is beyond the graze by `step`.
 
-    The gap, which turns with the acceleration a, is behind the stop by d = |slope step| at most: for the time s with
-    d = |a| s^2/8, and touches it with the speed |a| s/2.
+    The gap turns with the acceleration a. In a contact that begins smoothly it is behind the stop by d = |slope step|
+    at most, for the time s with d = |a| s^2/8, and touches it with the speed |a| s/2 = (2 |a| d)^(1/2); so does an
+    impact that the orbit has forgotten when it comes again.
     """
-    target = graze.touching
-    u, K = target.u.copy(), target.K
-    for k, slope in zip(graze.gone.tolist(), graze.distance_slopes, strict=True):
+    target, touched = graze.touching, graze.at_once
+    u, K, q = target.u.copy(), target.K, target.family.linear
+    depths, impulses = -graze.distance_slopes, None
+    if touched is not None:
+        depths, impulses = touched.begun(np.ones(K, bool))
+    for number, k in enumerate(graze.gone.tolist()):
+        side, a, d = target.sides[k], abs(float(target.motion[k, 1])), abs(depths[number] * step)
+        grows = impulses is None or is_smooth(q, side)
+        v = math.sqrt(2 * a * d) if grows else abs(impulses[number] * step) / impulse_by_speed(q, side)
+        u[k] -= v / a
+        u[K + k] -= side * v * one_plus_R(q, [side])[0]
         if k in target.rests:
-            a = abs(float(target.motion[k, 1]))
-            s = math.sqrt(8 * abs(slope * step) / a)
-            u[k] -= s / 2
-            u[K + k] -= target.sides[k] * a * s / 2
-            u[2 * K + target.rests.index(k)] += s / 2
+            u[2 * K + target.rests.index(k)] += 2 * v / (a + preload(q, side)) - v / a
     return u
 
 

@@ -6,12 +6,15 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from vibro_sweep.analysis.branches import branch_text
+from vibro_sweep.analysis.branches.touches_at_once import TouchesAtOnce
 from vibro_sweep.analysis.continuation.chatter import Chatter
-from vibro_sweep.analysis.periodic.contact_numbers import is_smooth, one_plus_R
+from vibro_sweep.analysis.periodic.contact_numbers import impulse_by_speed, is_smooth, one_plus_R
 from vibro_sweep.analysis.periodic.linearised import Linearised
 from vibro_sweep.analysis.periodic.orbit_motion import OrbitMotion
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
+from vibro_sweep.analysis.periodic.seeds_of_free_motion import touching_at_once
 from vibro_sweep.analysis.periodic.solution import Solution
+from vibro_sweep.model.linear import Family, Linear
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -75,8 +78,10 @@ class Graze:
     index: int  # of that impact in `touching`
     gone: np.ndarray  # indices of all that have zero speed there
     distance_slopes: np.ndarray  # d(distance from the stop)/dp of each of them, along the orbits without them
-    speed_slope: float  # d(impact speed)/dp along the orbits with it
+    speed_slope: float  # d(impact speed)/dp along the orbits with it; infinite where it begins like a square root
     multipliers: np.ndarray | None = None  # of the orbits with it, where all of the equations' are singular
+    at_once: TouchesAtOnce | None = None  # `touching`, where it is free motion with several touches
+    goes_on: bool | None = None  # where it touches both stops: whether orbits with some touches are on both sides
 
     @property
     def distance_slope(self) -> float:
@@ -85,11 +90,14 @@ class Graze:
 
     @property
     def kind(self) -> str:
-        """Whether the orbits with the impact go on where those without it end."""
-        return "persistence" if self.distance_slope * self.speed_slope < 0 else "nonsmooth fold"
+        """Whether the orbits with the impact, or with some of them, go on where those without it end."""
+        goes_on = self.distance_slope * self.speed_slope < 0 if self.goes_on is None else self.goes_on
+        return "persistence" if goes_on else "nonsmooth fold"
 
 
+FORGOTTEN = 1e12  # ratio of speeds and distances, in 1/omega, that only rounding makes: the impact is forgotten
 AT_ONCE = 1e-11  # the same, of impacts that vanish with another one, for all that rounding does
+SHALLOW = 1e-13  # of the gap's size: the depth of contacts that do
 TOUCHING = 2.0**-48  # of the gap's size, that counts as no distance from a stop
 
 
@@ -106,32 +114,58 @@ def shallow(solution: Solution) -> np.ndarray:
     """(K,) whether events are contacts that begin smoothly, with the speed v, and end before the depth v^2/(2 |a|) is
     more than rounding."""
     smooth = [is_smooth(solution.family.linear, side) for side in solution.sides]
-    most = 2 * np.abs(solution.motion[:, 1]) * TOUCHING * solution.size_of_gap
+    most = 2 * np.abs(solution.motion[:, 1]) * SHALLOW * solution.size_of_gap
     return np.array(smooth, bool) & (solution.pushes**2 <= most)
 
 
-def graze_at(solution: Solution, name: str, impact: int | None, touching: Solution | None = None) -> Graze:
+def graze_at(solution: Solution, name: str, impact: int | None, touching: Solution | None = None, index=0) -> Graze:
     """Unfold a graze: `impact` vanishes, or (None) the turning point nearest to its stop becomes an impact.
 
-    touching : the free motion with several of them, in place of that. Raises LinAlgError where the orbit without the
-    impact is at a fold.
+    touching : the free motion with several of them, in place of that, of which `index` is meant. Raises LinAlgError
+    where the orbit without the impact is at a fold.
     """
     if touching is not None:
-        without, index, gone = solution, 0, np.arange(touching.K)
+        without, gone = solution, np.arange(touching.K)
     elif impact is None:
         without, (touching, index) = solution, inserted(solution)
         gone = np.array([index])
     else:
         touching, index, gone = solution, impact, vanishing(solution, impact)
         without = bare(solution, gone)
+    derivative = solution.family.derivative(name)
+    watched = Linearised(touching, derivative, gone)
+    away = np.array([watched.distance_slope(i) for i in gone.tolist()])
+    begins = without, touching, index, gone, away
+    goes_on = orbits_on_both_sides(without.family, derivative) if without.K == 0 and without.sigma == 1 else None
     side, q = touching.sides[index], solution.family.linear
-    watched = Linearised(touching, solution.family.derivative(name), gone)
-    begins = without, touching, index, gone, np.array([watched.distance_slope(i) for i in gone.tolist()])
+    if len(gone) == touching.K > 1:
+        at_once = TouchesAtOnce(touching, -away)
+        every = np.ones(touching.K, bool)
+        depths, impulses = at_once.begun(every)
+        speed = float(impulses[index] / impulse_by_speed(q, side))
+        if np.any(at_once.smooth):
+            speed = math.copysign(np.inf, at_once.side_of(every) or depths[index])
+        return Graze(*begins, speed, at_once.multipliers() if np.all(at_once.smooth) else None, at_once, goes_on)
     if is_smooth(q, side):  # the speed grows like the square root of the distance passed
         # and where it ends by force the damper adds to the motion what is proportional to that distance
-        begun = Linearised(touching, solution.family.derivative(name), gone, index)
-        return Graze(*begins, math.copysign(np.inf, -begun.distance_slope(index)), begun.multipliers())
-    return Graze(*begins, float(-side * slopes(touching, name)[touching.K + index] / one_plus_R(q, [side])[0]))
+        begun = Linearised(touching, derivative, gone, index)
+        speed = math.copysign(np.inf, -begun.distance_slope(index))
+        return Graze(*begins, speed, begun.multipliers(), goes_on=goes_on)
+    speed = float(-side * slopes(touching, name)[touching.K + index] / one_plus_R(q, [side])[0])
+    if abs(speed) > FORGOTTEN * q.omega * abs(watched.distance_slope(index)):
+        speed = math.copysign(np.inf, -watched.distance_slope(index))
+    return Graze(*begins, speed, goes_on=goes_on)
+
+
+def orbits_on_both_sides(family: Family, derivative: Linear) -> bool | None:
+    """Of free motion that touches both stops at once: whether orbits begin, or end, there on both sides. None: it
+    touches one."""
+    found = touching_at_once(Solution(family, 1, 2, (), np.empty(0)))
+    if found is None:
+        return None
+    touching, gone = found[0], range(found[0].K)
+    watched = Linearised(touching, derivative, gone)
+    return TouchesAtOnce(touching, np.array([-watched.distance_slope(i) for i in gone])).goes_on()
 
 
 def inserted(solution: Solution, slow=()) -> tuple[Solution, int]:

@@ -69,3 +69,14 @@ def is_smooth(q: Linear, side: int) -> bool:
 def has_corner(q: Linear, side: int) -> bool:
     """Whether multipliers jump at the graze of a contact with this stop, by its damper."""
     return q.by_force and is_smooth(q, side) and (q.c_high if side > 0 else q.c_low) > 0
+
+
+def preload(q: Linear, side: int) -> float:
+    """The acceleration with which the preload of a compliant stop takes the gap back; 0 of other stops."""
+    force = (q.p_high if side > 0 else q.p_low) if q.is_compliant(side) else 0.0
+    return float(force * (contact_coordinates(q).by_force[0] @ q.normal))
+
+
+def impulse_by_speed(q: Linear, side: int) -> float:
+    """The impulse, as a change of the gap velocity, over the speed of a weak touch that does not begin smoothly."""
+    return 2.0 if q.is_compliant(side) else 1.0 + float(q.restitution(side))

@@ -30,14 +30,21 @@ def touches_of_free_motion(free: Solution) -> list[tuple[float, int]]:
     return sorted((_time(q, swing, side, 0.0) % free.P, side) for side in sides)
 
 
-def with_first_touch(free: Solution) -> Solution | None:
-    """The free motion that touches both stops at once with one touch, that of a rigid stop before a compliant one and
-    of the left stop before the right one, so that rounding does not choose. None: it touches one, or is half an
-    orbit."""
+def with_touches(free: Solution, touches: list[tuple[float, int]]) -> Solution:
+    """The free motion with these touches."""
+    for index, (time, side) in enumerate(touches):
+        free = free.with_touch(index, time, side)
+    return free
+
+
+def touching_at_once(free: Solution) -> tuple[Solution, int] | None:
+    """The free motion that touches both stops at once with both touches, and the index of that which is named: of a
+    rigid stop before a compliant one, of the left stop before the right one, so that rounding does not choose. None: it
+    touches one, or is half an orbit."""
     if free.K or free.sigma == -1 or len(touches := touches_of_free_motion(free)) < 2:
         return None
-    time, side = min(touches, key=lambda touch: (free.family.linear.is_compliant(touch[1]), touch[1]))
-    return free.with_touch(0, time, side)
+    q = free.family.linear
+    return with_touches(free, touches), min(range(2), key=lambda i: (q.is_compliant(touches[i][1]), touches[i][1]))
 
 
 def from_free_motion(start: Solution) -> Solution | None:

@@ -1,0 +1,101 @@
+"""The free motion touches both stops at once: the orbits that begin there, and those that matrices say do."""
+
+from itertools import product
+
+import numpy as np
+import pytest
+from scipy.linalg import expm
+
+import vibro_sweep as vs
+
+CASES = [  # omega, zeta, dampers of the right and the left stop
+    (0.75, 0.05, 43.0, 27.0),
+    (0.8, 0.05, 8.0, 5.0),
+    (0.7, 0.1, 20.0, 10.0),
+    (0.45, 0.05, 8.0, 5.0),
+    (0.45, 0.05, 8.0, 7.0),
+    (1.5, 0.05, 8.0, 5.0),
+    (2.5, 0.05, 1.0, 0.7),
+]
+
+
+def half_map(omega, zeta):
+    """Of x'' + 2 zeta x' + x = 0 from one turning point of the free motion to the next."""
+    return expm(np.array([[0, 1], [-1, -2 * zeta]]) * np.pi / omega)
+
+
+def corner(damper):
+    return np.array([[1, 0], [-damper, 1]])
+
+
+def itineraries(omega, zeta, right, left):
+    """Of orbits that exist where the free motion has a smaller, a larger amplitude than the gap."""
+    H, both = half_map(omega, zeta), {-1: set(), 1: set()}
+    for larger, hits_right, hits_left in product((-1, 1), (False, True), (False, True)):
+        C, D = corner(hits_right * right), corner(hits_left * left)
+        # y: deviation from the free motion, whose turning points are `larger` behind the stops, before the right touch
+        push_right, push_left = np.array([0, -hits_right * right * larger]), np.array([0, hits_left * left * larger])
+        y = np.linalg.solve(np.eye(2) - H @ D @ H @ C, H @ (D @ H @ push_right + push_left))
+        z = H @ (C @ y + push_right)
+        if (y[0] + larger > 0) == hits_right and (larger - z[0] > 0) == hits_left:
+            both[larger].add("L" * hits_left + "R" * hits_right)
+    return both
+
+
+@pytest.mark.parametrize("omega, zeta, right, left", CASES)
+def test_contacts_that_end_by_force(omega, zeta, right, left):
+    amplitude = 1 / np.hypot(1 - omega**2, 2 * zeta * omega)
+    inside, sign = (0.97, 1) if omega < 1 else (1.03, -1)  # where the amplitude is smaller; its growth with omega
+    system = vs.Oscillator.named(
+        "one_mass", k=1, zeta=zeta, F=1, omega=omega * inside, b=amplitude, tau=0.3, release="force",
+        k_stop=300, c_stop=right, k_stop_left=200, c_stop_left=left,
+    )  # fmt: skip
+    expected = itineraries(omega, zeta, right, left)
+    bounds = 0.9 * omega, 1.1 * omega
+    free = vs.continue_orbit(vs.periodic_orbit(system, itinerary=""), "omega", bounds)
+    (graze,) = [one for one in free.special if one.type == "graze"]
+    assert graze.parameters["omega"] == pytest.approx(omega, abs=1e-13) and graze.stop == -1
+    kind = "persistence" if expected[1] and expected[-1] else "nonsmooth fold"
+    assert graze.kind == kind
+    begun = vs.switch(graze)
+    assert begun
+    for orbit in begun:
+        side = sign * int(np.sign(orbit.system.omega - omega))
+        assert orbit.itinerary in expected[side]
+        branch = vs.continue_orbit(orbit, "omega", bounds)
+        ends = [one for one in branch.special if one.type == "graze" and abs(one.parameters["omega"] - omega) < 1e-12]
+        assert ends and ends[0].kind == kind
+        if orbit.itinerary == "LR":
+            H = half_map(omega, zeta)
+            values = np.linalg.eigvals(H @ corner(left) @ H @ corner(right))
+            assert np.sort(np.abs(ends[0].multipliers)) == pytest.approx(np.sort(np.abs(values)), rel=1e-9)
+
+
+@pytest.mark.parametrize("stops", [{"R": 0.7, "R_left": 0.5}, {"R": 0.3, "R_left": 0.9}, {"k_stop": 30, "R_left": 0.7}])
+@pytest.mark.parametrize("omega", [0.45, 0.8, 2.5])
+def test_impacts_begin_as_fast_as_they_do_on_their_branch(omega, stops):
+    """Speeds by the number, of orbits that `switch` gives, twice as far away are twice as large."""
+    amplitude, inside = 1 / np.hypot(1 - omega**2, 0.1 * omega), 0.97 if omega < 1 else 1.03
+    system = vs.Oscillator.named("one_mass", k=1, zeta=0.05, F=1, omega=omega * inside, b=amplitude, tau=0.3, **stops)
+    free = vs.continue_orbit(vs.periodic_orbit(system, itinerary=""), "omega", (0.9 * omega, 1.1 * omega))
+    (graze,) = [one for one in free.special if one.type == "graze"]
+    begun = vs.switch(graze)
+    sides = {int(np.sign(orbit.system.omega - omega)) for orbit in begun} | {-1 if omega < 1 else 1}
+    assert begun and graze.kind == ("persistence" if len(sides) == 2 else "nonsmooth fold")
+
+
+def test_an_impact_that_is_forgotten_begins_on_the_other_side_and_from_all_starts():
+    """A long contact damps to 1e-31 what is left of an impact: the sign of the linear answer was rounding."""
+    system = vs.Oscillator.named(
+        "one_mass", k=1.1382099671765398, zeta=0.0, F=0.4657714744778907, omega=0.44761943522526637, R=1.0,
+        k_stop_left=3985.6239394137633, c_stop_left=47.853618720326274, b=0.10760910011476069, tau=0.6102898288417304,
+    )  # fmt: skip
+    for zeta in (0.01, 0.1, 0.17, 0.181):
+        there = system.replace(zeta=zeta)
+        orbit = vs.periodic_orbit(there, state=vs.simulate(there, (0, 0), 300).section[-1])
+        graze = vs.continue_orbit(orbit, "zeta", (0.0, 0.25)).ends
+        assert (graze.type, graze.kind, graze.direction) == ("graze", "persistence", -1)
+        (beyond,) = vs.switch(graze)
+        assert beyond.itinerary == "LLLRRRRR" and beyond.system.zeta > graze.parameters["zeta"]
+        flown = vs.simulate(beyond.system, beyond.state, 1)
+        assert np.abs(flown.section[-1] - beyond.state).max() < 1e-12 and len(flown.impacts) == 5
