@@ -7,8 +7,10 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import fsolve
 from support import compliant_curves
-from support.compliant_branches import drawn_case, follow
+from support.compliant_branches import drawn_case
+from support.drawn_branches import Case
 from support.random_curves import steps_of
+from support.same_branch import follow
 
 import vibro_sweep as vs
 
@@ -271,3 +273,16 @@ def test_points_beside_the_graze_of_a_contact_do_not_depend_on_steps(seed):
 
 def points(curve, expected: str):
     return [one for one in curve.special if one.type == expected]
+
+
+def test_a_branch_ends_as_split_with_steps_of_every_length():
+    """One that leads at once to what is no motion ended as `failed` at the same place."""
+    system = vs.System(
+        mu_m=0.5795038292920104, mu_k=1.8132932901918726, zeta=0.11150691424431475, f2=0.7890304343508028,
+        omega=1.7299099654394774, b=0.20416521446326663, tau="grazing", offset=0.035661460411879224, R=None,
+        R_left=1.0, k_stop=232.41253118292923, c_stop=9.698818225540375,
+    )  # fmt: skip
+    orbit = vs.periodic_orbit(system, itinerary="LRR")
+    for factor in (1.0, 2.0):
+        end = follow(Case(orbit, "c_stop", (0.0, 50.0)), factor).ends
+        assert end.type == "split" and end.parameters["c_stop"] == pytest.approx(15.4549764978, rel=1e-10)

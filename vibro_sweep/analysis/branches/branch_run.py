@@ -204,7 +204,7 @@ class BranchRun:
             b = end.place
             end = first_end(self.curve, ends_between(self.curve, self.bounds, a, b), a, b) or end
         if ends and end is None:  # what follows is not a motion
-            if not self._press_for_good(self._last_solution()):
+            if not (self._join_contacts() or self._press_for_good(self._last_solution())):
                 self.special.append(self._at("failed", a, math.nan))
             return True
         last = end.place if end else b
