@@ -2,6 +2,8 @@
 
 import numpy as np
 import pytest
+from support.drawn_branches import Case
+from support.same_branch import follow
 
 import vibro_sweep as vs
 
@@ -61,3 +63,15 @@ def test_multipliers_jump_where_a_damped_contact_ends_by_force():
         struck = vs.continue_orbit(vs.periodic_orbit(system, itinerary="R"), "b", bounds).ends
         apart.append(np.abs(struck.multipliers - orbit.multipliers).max())
     assert apart[0] / apart[1] == pytest.approx(10, rel=0.05)  # like the square root
+
+
+def test_rounding_beside_the_graze_at_which_a_branch_cannot_go_on_is_no_fold():
+    """With shorter steps both contacts had vanished at the last point, and a fold was listed there."""
+    system = vs.Oscillator.named(
+        "one_mass", k=1.5406729141375952, zeta=0.08334301017306767, F=0.2817480531964948, omega=1.397073462083662,
+        k_stop=69.08732688701915, c_stop=0.0, k_stop_left=27.360630054753283, c_stop_left=0.3473744701999591,
+        b=0.4856720359594633, tau=3.5999475395669833,
+    )  # fmt: skip
+    case = Case(vs.periodic_orbit(system, itinerary="LR"), "omega", (0.419122039, 4.19122039))
+    for factor in (0.5, 1.0):
+        assert [one.type for one in follow(case, factor).special] == ["graze", "flip", "fold", "fold", "graze"]

@@ -99,6 +99,7 @@ class BranchRun:
     def _fail_at(self, a: Point) -> SpecialPoint:
         """`failed` at this point, or the graze at which it lies to rounding: all contacts may vanish there at once."""
         if abs(a.stop_distance) <= TOUCHING * a.solution.size_of_gap or np.any(shallow(a.solution)):
+            self._forget_beside(a.value, 0.0)
             return self._end(Event("graze", lambda point: point.stop_distance, touches=True), a, 0.0)
         return self._at("failed", a, math.nan)
 
