@@ -28,16 +28,32 @@ def corner(damper):
     return np.array([[1, 0], [-damper, 1]])
 
 
+RIGID = None  # in place of a damper
+
+
 def itineraries(omega, zeta, right, left):
-    """Of orbits that exist where the free motion has a smaller, a larger amplitude than the gap."""
+    """Of orbits that exist where the free motion has a smaller, a larger amplitude than the gap.
+
+    Unknown are the deviations from the free motion at its turning points, y at the right stop and z at the left, and
+    the impulses of the stops: z = H (y - J_R), y = H (z + J_L), with turning points `larger` behind the stops.
+    """
     H, both = half_map(omega, zeta), {-1: set(), 1: set()}
     for larger, hits_right, hits_left in product((-1, 1), (False, True), (False, True)):
-        C, D = corner(hits_right * right), corner(hits_left * left)
-        # y: deviation from the free motion, whose turning points are `larger` behind the stops, before the right touch
-        push_right, push_left = np.array([0, -hits_right * right * larger]), np.array([0, hits_left * left * larger])
-        y = np.linalg.solve(np.eye(2) - H @ D @ H @ C, H @ (D @ H @ push_right + push_left))
-        z = H @ (C @ y + push_right)
-        if (y[0] + larger > 0) == hits_right and (larger - z[0] > 0) == hits_left:
+        rows, values = np.zeros((6, 6)), np.zeros(6)  # of y, z, J_R, J_L
+        rows[:2, :2], rows[:2, 2:4], rows[:2, 5] = np.eye(2), -H, -H[:, 1]
+        rows[2:4, 2:4], rows[2:4, :2], rows[2:4, 4] = np.eye(2), -H, H[:, 1]
+        for row, damper, hits, place, sign in ((4, right, hits_right, 0, 1), (5, left, hits_left, 2, -1)):
+            if hits and damper is RIGID:  # sign y + larger = 0
+                rows[row, place], values[row] = sign, -larger
+            else:  # J = damper (sign y + larger)
+                damper = damper if hits else 0
+                rows[row, row], rows[row, place], values[row] = 1, -damper * sign, damper * larger
+        found = np.linalg.solve(rows, values)
+        pressed = [
+            found[row] > 0 if hits and damper is RIGID else (sign * found[place] + larger > 0) == hits
+            for row, damper, hits, place, sign in ((4, right, hits_right, 0, 1), (5, left, hits_left, 2, -1))
+        ]
+        if all(pressed):
             both[larger].add("L" * hits_left + "R" * hits_right)
     return both
 
@@ -58,10 +74,9 @@ def test_contacts_that_end_by_force(omega, zeta, right, left):
     kind = "persistence" if expected[1] and expected[-1] else "nonsmooth fold"
     assert graze.kind == kind
     begun = vs.switch(graze)
-    assert begun
+    found = {(sign * int(np.sign(one.system.omega - omega)), one.itinerary) for one in begun}
+    assert found == {(side, name) for side, names in expected.items() for name in names if name}
     for orbit in begun:
-        side = sign * int(np.sign(orbit.system.omega - omega))
-        assert orbit.itinerary in expected[side]
         branch = vs.continue_orbit(orbit, "omega", bounds)
         ends = [one for one in branch.special if one.type == "graze" and abs(one.parameters["omega"] - omega) < 1e-12]
         assert ends and ends[0].kind == kind
@@ -71,17 +86,29 @@ def test_contacts_that_end_by_force(omega, zeta, right, left):
             assert np.sort(np.abs(ends[0].multipliers)) == pytest.approx(np.sort(np.abs(values)), rel=1e-9)
 
 
-@pytest.mark.parametrize("stops", [{"R": 0.7, "R_left": 0.5}, {"R": 0.3, "R_left": 0.9}, {"k_stop": 30, "R_left": 0.7}])
+@pytest.mark.parametrize(
+    "stops, right, left",
+    [
+        ({"R": 0.7, "R_left": 0.5}, RIGID, RIGID),
+        ({"R": 0.3, "R_left": 0.9}, RIGID, RIGID),
+        ({"k_stop": 30, "R_left": 0.7}, 0, RIGID),
+        ({"k_stop": 30, "preload": 0.1, "k_stop_left": 20, "preload_left": 0}, RIGID, 0),
+        ({"k_stop": 30, "preload": 0.1, "k_stop_left": 20}, RIGID, RIGID),
+        ({"k_stop": 300, "c_stop": 8, "R_left": 0.7, "release": "force"}, 8, RIGID),
+    ],
+    ids=str,
+)
 @pytest.mark.parametrize("omega", [0.45, 0.8, 2.5])
-def test_impacts_begin_as_fast_as_they_do_on_their_branch(omega, stops):
-    """Speeds by the number, of orbits that `switch` gives, twice as far away are twice as large."""
-    amplitude, inside = 1 / np.hypot(1 - omega**2, 0.1 * omega), 0.97 if omega < 1 else 1.03
+def test_impacts_and_preload_beside_other_stops(omega, stops, right, left):
+    amplitude = 1 / np.hypot(1 - omega**2, 0.1 * omega)
+    inside, sign = (0.97, 1) if omega < 1 else (1.03, -1)
     system = vs.Oscillator.named("one_mass", k=1, zeta=0.05, F=1, omega=omega * inside, b=amplitude, tau=0.3, **stops)
+    expected = itineraries(omega, 0.05, right, left)
     free = vs.continue_orbit(vs.periodic_orbit(system, itinerary=""), "omega", (0.9 * omega, 1.1 * omega))
     (graze,) = [one for one in free.special if one.type == "graze"]
-    begun = vs.switch(graze)
-    sides = {int(np.sign(orbit.system.omega - omega)) for orbit in begun} | {-1 if omega < 1 else 1}
-    assert begun and graze.kind == ("persistence" if len(sides) == 2 else "nonsmooth fold")
+    assert graze.kind == ("persistence" if expected[1] and expected[-1] else "nonsmooth fold")
+    begun = {(sign * int(np.sign(one.system.omega - omega)), one.itinerary) for one in vs.switch(graze)}
+    assert begun == {(side, name) for side, names in expected.items() for name in names if name}
 
 
 def test_an_impact_that_is_forgotten_begins_on_the_other_side_and_from_all_starts():
