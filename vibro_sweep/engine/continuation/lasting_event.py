@@ -161,7 +161,8 @@ def hold_of(f, compliant, side, x, e, work):
     work.turning[0] = np.inf if in_contact else dot(work.force[0], Z, n + 4) / scale
     for k in range(1 << halvings):
         if k > 0:
-            put_end(f, work)
+            for r in range(n + 2):
+                work.end[0, r] = dot(work.lasting[0, r], Z, n + 4)
             for r in range(n + 2):
                 Z[r] = work.end[0, r]
         length = step * OVERLAP if k + 1 < 1 << halvings else step
