@@ -53,15 +53,23 @@ def begin(f, compliant, side, x, e, work):
 
 
 @jit
+def put_state(f, E, Z, end):
+    """end: E Z, but for what stays."""
+    n = f.A.shape[0]
+    for r in range(n):
+        end[r] = dot(E[r], Z, n + 4)
+    for r in range(n, n + 2):
+        end[r] = E[r, n] * Z[n] + E[r, n + 1] * Z[n + 1]
+
+
+@jit
 def put_end(f, work):
     """work.end: E Z and its derivatives by the parameters."""
     n, E, start, end = f.A.shape[0], work.lasting, work.start, work.end
+    put_state(f, E[0], start[0], end[0])
     for r in range(n):
-        end[0, r] = dot(E[0, r], start[0], n + 4)
         for j in range(1, f.parameters + 1):
             end[j, r] = dot(E[0, r], start[j], n + 4) + dot(E[j, r], start[0], n + 4)
-    for r in range(n, n + 2):
-        end[0, r] = E[0, r, n] * start[0, n] + E[0, r, n + 1] * start[0, n + 1]
     for j in range(f.parameters + 1):
         end[j, n + 2], end[j, n + 3] = start[j, n + 2], start[j, n + 3]
 
@@ -161,8 +169,7 @@ def hold_of(f, compliant, side, x, e, work):
     work.turning[0] = np.inf if in_contact else dot(work.force[0], Z, n + 4) / scale
     for k in range(1 << halvings):
         if k > 0:
-            for r in range(n + 2):
-                work.end[0, r] = dot(work.lasting[0, r], Z, n + 4)
+            put_state(f, work.lasting[0], Z, work.end[0])
             for r in range(n + 2):
                 Z[r] = work.end[0, r]
         length = step * OVERLAP if k + 1 < 1 << halvings else step
