@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from vibro_sweep.engine.continuation.moving_flow import OMEGA, expand_gap, law_at, shift
-from vibro_sweep.engine.impulses.taylor_orders import ORDER
+from vibro_sweep.engine.impulses.extremes import slope_of, value_of
 from vibro_sweep.engine.simd.jit import small
 
 DIGITS = 53 * math.log(2.0)
@@ -70,8 +70,8 @@ def least_distance(f, place, b, i, side, time):
                     else:
                         high = middle
                 place_of_stop = (e.depth + rest) * math.exp(-rate * (base + high)) - rest
-                least = min(least, (place_of_stop - e.depth - side * (gap_at(cell, high) - origin)) / e.depth)
-            if e.depth + side * (gap_at(cell, to) - origin) < 0.0:
+                least = min(least, (place_of_stop - e.depth - side * (value_of(cell, high) - origin)) / e.depth)
+            if e.depth + side * (value_of(cell, to) - origin) < 0.0:
                 return least
             u = to
         shift(f, f.powers[0], y, work.flying[1])
@@ -80,20 +80,9 @@ def least_distance(f, place, b, i, side, time):
 
 
 @small
-def gap_at(cell, u):
-    total = cell[ORDER]
-    for q in range(ORDER - 1, -1, -1):
-        total = total * u + cell[q]
-    return total
-
-
-@small
 def rate_apart(side, rate, scale, cell, base, u):
     """The rate of s - delta at the time u of the cell that begins at `base`."""
-    total = ORDER * cell[ORDER]
-    for q in range(ORDER - 1, 0, -1):
-        total = total * u + q * cell[q]
-    return -rate * scale * math.exp(-rate * (base + u)) - side * total
+    return -rate * scale * math.exp(-rate * (base + u)) - side * slope_of(cell, u)
 
 
 @small
