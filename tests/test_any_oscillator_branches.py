@@ -36,10 +36,8 @@ def settled(system):
     return section[-1], period
 
 
-FAST = ("rests without restitution",)  # each number of masses compiles kernels of its own
-
-
-@pytest.mark.parametrize("name", [n if n in FAST else pytest.param(n, marks=pytest.mark.slow) for n in CASES])
+@pytest.mark.slow  # each number of masses compiles kernels of its own
+@pytest.mark.parametrize("name", CASES)
 def test_branch_against_simulation(name):
     system, itinerary, parameter, bounds = CASES[name]
     state, period = settled(system)
@@ -68,6 +66,7 @@ def test_branch_against_simulation(name):
             assert np.sort(after.impacts["v1"]) == pytest.approx(np.sort(point.impact_v), abs=1e-9 * max(1, largest))
 
 
+@pytest.mark.slow
 def test_orbit_of_an_oscillator_survives_its_file(tmp_path):
     system = CASES["one mass"][0]
     orbit = vs.periodic_orbit(system, state=settled(system)[0])

@@ -12,6 +12,7 @@ THREE_MASSES = slow_cases(("rigid", 74))  # each number of masses compiles kerne
 ONCE_LOST = [("rigid", 21), ("rigid", 46), *THREE_MASSES, ("compliant", 1180)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("stops, seed", ONCE_LOST)
 def test_a_graze_is_the_same_from_every_orbit_beside_it(stops, seed):
     counted, wrong = study(seed, stops)

@@ -8,6 +8,8 @@ from support.any_oscillators import one_mass
 
 import vibro_sweep as vs
 
+pytestmark = pytest.mark.slow  # motions of one mass between rigid stops compile a kernel of their own
+
 
 @pytest.mark.parametrize(("R", "n", "gamma"), [(0.8, 1, 1.05), (0.8, 1, 0.5), (0.5, 2, 2.3)])
 def test_bouncing_ball(R, n, gamma):
@@ -20,7 +22,6 @@ def test_bouncing_ball(R, n, gamma):
     np.testing.assert_allclose(np.diff(hits["t"]), n * 2 * math.pi, rtol=1e-13)
 
 
-@pytest.mark.slow  # exponents of one mass compile a kernel of their own
 @pytest.mark.parametrize(("R", "n", "flip"), [(0.8, 1, 1.07083646824791), (0.5, 2, 2.37087721026694)])
 def test_flip_of_the_bouncing_ball(R, n, flip):
     """Within 1e-9 of the flip lambda_1 changes its sign. The orbit begins a time 1 after an impact."""

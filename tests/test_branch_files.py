@@ -115,6 +115,7 @@ def test_other_beginnings(begin, parameter, number, tmp_path):
         assert data.sizes["branch"] == number
 
 
+@pytest.mark.slow
 def test_orbits_that_are_not_found_are_no_beginning(tmp_path):
     """Of those born at a graze without damping, one of twice the period is not found."""
     numbers = "{type: one_mass, k: 1, zeta: 0, F: 0.5, omega: 0.8, stops: left, R: 0.8, b: 1}"

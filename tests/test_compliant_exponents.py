@@ -131,6 +131,7 @@ def test_exponents_where_a_rigid_stop_loses_dimensions(release):
     assert float(row.lyapunov[0]) == pytest.approx(decays, abs=1e-4)
 
 
+@pytest.mark.slow
 def test_exponents_where_a_mass_rests_on_the_rigid_stop():
     """After chatter: two dimensions are lost, and in the plane of the others small differences grow as they say."""
     system = vs.System(mu_m=1.2756, mu_k=1.8346, zeta=0.12786, f2=0, omega=1.9463, R=0.12, b=0.2294, k_stop_left=1745.5)

@@ -273,7 +273,7 @@ def test_orbits_that_attract_are_found_by_their_contacts():
     assert not missed
 
 
-@pytest.mark.parametrize("stops", [dict(k_stop=29), dict(R=0.8)], ids=["elastic", "rigid"])
+@pytest.mark.parametrize("stops", [dict(k_stop=29), *slow_cases(dict(R=0.8))], ids=["elastic", "rigid"])
 @pytest.mark.parametrize("unsettled", [1e-8, -1e-8, 1e-4, -1e-4])
 @pytest.mark.parametrize("share", [-0.01, 1e-9])
 def test_an_orbit_that_has_nearly_settled(stops, unsettled, share):

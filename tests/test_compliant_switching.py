@@ -275,6 +275,7 @@ def points(curve, expected: str):
     return [one for one in curve.special if one.type == expected]
 
 
+@pytest.mark.slow
 def test_a_branch_ends_as_split_with_steps_of_every_length():
     """One that leads at once to what is no motion ended as `failed` at the same place."""
     system = vs.System(

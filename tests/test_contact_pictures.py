@@ -82,6 +82,7 @@ def test_a_loop_of_an_orbit_has_the_area_that_the_stop_takes(periodic):
     assert area == pytest.approx(float(energy.impact_power[0]) * T, rel=0.01)
 
 
+@pytest.mark.slow
 def test_orbits_with_rigid_stops_have_no_such_picture():
     orbit = vs.simulate(system(k_stop=None, c_stop=None, R=0.8), (0, 0), 5)
     with pytest.raises(ValueError, match="contact-force"):

@@ -13,6 +13,7 @@ import vibro_sweep as vs
 SYSTEM = vs.Oscillator.named("one_mass", k=1, zeta=0.05, F=0.5, omega=0.8, b=1, tau=0, k_stop=5, c_stop=1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("damping", [1e9, 1e12])
 def test_a_strong_damper_costs_no_steps(damping):
     """The mass creeps. Left by force the stop is a rigid one with R = 0; by displacement it holds the mass until what

@@ -42,6 +42,7 @@ def test_curves_of_contacts_come_back_from_files_and_know_their_own_points(tmp_p
 THREE_MASSES = slow_cases((6, {"closed"}))  # each number of masses compiles kernels of its own
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed, types", [*THREE_MASSES, (8, {"flip_graze"}), (26, {"resonant_graze"})])
 def test_points_of_codimension_two_are_the_same_from_their_arrays(seed, types):
     """Those at the birth of doubled orbits, where a touch vanishes, and where a curve comes back to its first point."""

@@ -9,7 +9,7 @@ from support.branches import exact_of_any
 @pytest.mark.parametrize(
     "seeds",
     [
-        [6, 7],
+        pytest.param([6, 7], marks=pytest.mark.slow),  # kernels of one mass
         pytest.param([340, 442], marks=pytest.mark.slow),  # in narrow bounds the errors were too small
         pytest.param(range(100), marks=pytest.mark.slow),
         pytest.param(range(100, 1100), marks=pytest.mark.soak),

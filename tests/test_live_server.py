@@ -159,6 +159,7 @@ def test_a_newer_diagram_ends_the_following_of_a_window(page, view):
     assert words["seq"] == 4 and words["period"] == 13
 
 
+@pytest.mark.slow
 def test_a_mapping_is_swept_and_saved_as_one(page, tmp_path, monkeypatch):
     view = answers(page, "open", 1, name="figure_06")[0]["view"] | {"columns": 16, "transient": 100, "record": 20}
     assert view["dynamics"] == "map"

@@ -21,6 +21,7 @@ def search(masses, flights):
     return rows
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("masses", "flights"),
     [(2, 1000), *(pytest.param(n, 10_000, marks=pytest.mark.slow) for n in MASSES)],

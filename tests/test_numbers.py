@@ -70,6 +70,7 @@ def test_every_number_of_every_point_is_in_the_file(tmp_path, kind, tau):
         } - set(scene.sweep))  # fmt: skip
 
 
+@pytest.mark.slow
 def test_words_of_maps_and_impact_sections(tmp_path):
     text = "dynamics: map\norder: 2\nexpand_at: 6.7107356\norbit: {transient: 3, record: 4}"
     _, path = run(tmp_path, text, orbit="")

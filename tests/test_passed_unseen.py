@@ -64,6 +64,7 @@ def test_they_do_not_depend_on_the_step(beside_fold, factor, monkeypatch):
         same_points(vs.continue_orbit(begun, "b", (0.0856, 0.3425)), types(beside_fold[2]), 1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("bounds", [(1.2, 1.8), *slow_cases(((0.3, 2.1),), ((1.0, 1.52),))])
 def test_a_step_that_lands_on_the_birth(bounds):
     """With the first bounds a point lies where a multiplier is 1.00000003 and the tangent's sign is rounding."""

@@ -119,6 +119,7 @@ def test_product_of_the_multipliers_is_known(R):
     assert np.prod(orbit.multipliers) == pytest.approx(expected, rel=1e-11)
 
 
+@pytest.mark.slow
 def test_impact_without_restitution():
     """R = 0: one dimension is lost at every impact that leaves the stop at once."""
     orbit = vs.periodic_orbit(PAPER.replace(b=5.0, R=0.0), itinerary="LR")

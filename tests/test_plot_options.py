@@ -193,6 +193,7 @@ def test_bad_values(here, tmp_path, capsys, arguments, words):
     assert not list(here.glob("*.png")) and not list(tmp_path.iterdir())
 
 
+@pytest.mark.slow
 def test_limits_of_a_frequency_are_said_in_hertz_too(tmp_path):
     system = vs.Oscillator.named("one_mass", zeta=0.1, F=1, omega=6, R=0.5, b=1, units="SI")
     data = vs.sweep(system, {"omega": [2 * np.pi, 4 * np.pi]}, transient=2, record=2)

@@ -231,7 +231,7 @@ observe: [attractors]"""
     assert {one.get_text().split(" (")[0] for one in fig.legends[0].get_texts()} == words
 
 
-@pytest.mark.parametrize("law, missed", [("k_stop: 10", False), ("R: 0.7", True)])
+@pytest.mark.parametrize("law, missed", [("k_stop: 10", False), *slow_cases(("R: 0.7", True))])
 def test_a_diagram_of_compliant_stops_does_not_miss_impacts(tmp_path, law, missed):
     """Of rigid stops beyond the motion it says that there are none."""
     system = f"system: {{type: one_mass, zeta: 0.02, F: 0.8, omega: 1.6, b: 30, tau: 0, {law}}}"

@@ -16,6 +16,8 @@ from vibro_sweep.analysis.periodic.periodic_orbit import orbit_of
 from vibro_sweep.engine.impulses.flow import contact_coordinates
 from vibro_sweep.model.linear import family_of
 
+pytestmark = pytest.mark.slow  # orbits with rests compile a kernel of branches of their own
+
 DEAD = PAPER.replace(R=0.0)
 
 

@@ -74,7 +74,7 @@ def ratios(seed):
     return rows
 
 
-@pytest.mark.parametrize("count", [2, *slow_cases(12), pytest.param(400, marks=pytest.mark.soak)])
+@pytest.mark.parametrize("count", [*slow_cases(2, 12), pytest.param(400, marks=pytest.mark.soak)])
 def test_random_orbits(count, capsys):
     with mp.workdps(30):
         found = np.array([row for seed in range(20, 20 + count) for row in ratios(seed)])

@@ -13,6 +13,7 @@ from vibro_sweep.engine.one_system import Engine
 SMALL = [2, *slow_cases(1, 3)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("masses", [2, *slow_cases(3)])
 def test_other_coordinates(masses):
     """x -> S x and n -> S^-T n: the same gap, whatever the coordinates."""
@@ -45,6 +46,7 @@ def test_mirror_image(tau):
         np.testing.assert_allclose(hits[name], -mirrored[name], rtol=0, atol=1e-13)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("masses", SMALL)
 def test_mirror_image_of_any(masses):
     """The same, with the constant force turned round."""
@@ -82,6 +84,7 @@ def test_stiffly_joined_masses():
     assert apart[0] < 1e-2 and apart[1] < apart[0] / 30 and apart[2] < apart[1] / 30
 
 
+@pytest.mark.slow
 def test_impacts_at_the_sections():
     """The stop is at 0, where the gap has no size of its own to which its rounding could be compared."""
     speed, phi = 2 * math.pi / 1.8, math.acos(0.2 * math.pi / 1.8)
@@ -99,6 +102,7 @@ def test_a_free_mode_of_the_paper():
     np.testing.assert_allclose(exponents, [0, 0, -0.055, -0.055], rtol=0, atol=1e-13)  # eta_2 = zeta (1 + 1/mu_m)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("masses", SMALL)
 def test_eight_orbits_are_as_one_alone(masses):
     """Bit for bit, whatever the others do; chatter and rests among them."""

@@ -37,6 +37,7 @@ def test_a_system_along_a_number(capsys):
         urllib.request.urlopen(page.url)
 
 
+@pytest.mark.slow
 def test_sweeps_begin_with_their_view(tmp_path, capsys):
     ball = vs.Oscillator.named("one_mass", F=1, omega=1, zeta=0.1, R=0.7, b=1)
     data = vs.sweep(ball, {"F": [0.5, 1.5]}, output=tmp_path / "ball.h5", **SHORT)

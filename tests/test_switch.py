@@ -49,6 +49,7 @@ def test_graze_hands_over_to_the_orbit_with_one_impact_more(symmetric_branch):
     assert touching.impact is not None and touching.kind == "nonsmooth fold"
 
 
+@pytest.mark.slow
 def test_impact_that_vanishes_where_the_orbit_starts_a_forcing_period_later():
     """`impacts` begin within [0, T): those of an orbit of period 2 T may be the solution's, shifted by T.
 

@@ -108,6 +108,7 @@ def test_a_plane_row_by_row(tmp_path):
     assert along.parameter == "omega" and along.window.shape == (2, 3, 1)
 
 
+@pytest.mark.slow
 def test_a_rest_after_one_impact_is_no_window_in_the_restitution(tmp_path):
     """At R = 0 the mass rests at once, at any other R after infinitely many impacts: the branch in R is not a
     motion."""

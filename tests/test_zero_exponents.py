@@ -116,7 +116,7 @@ def test_free_motion(count, most, capsys):
     assert compared > 1.5 * count and zeros > count / 2 and five == wrong == 0 and two <= 0.03 * compared
 
 
-@pytest.mark.parametrize("count", [12, *soak(500)])
+@pytest.mark.parametrize("count", [*slow_cases(12), *soak(500)])
 def test_regular_motion_without_losses(count, capsys):
     """One mass: both exponents are 0. Two masses: those of the flow and of the energy are, and all come in pairs."""
     beyond, compared, chaotic, tried = np.zeros(2, int), 0, 0, 0
@@ -147,7 +147,7 @@ def scatter(running, T):
     return np.sqrt(squares / (20 * 19) * (1 + c) / (1 - c))
 
 
-@pytest.mark.parametrize("count", [1, *slow_cases(40), *soak(500)])
+@pytest.mark.parametrize("count", [*slow_cases(1, 40), *soak(500)])
 def test_chaos_is_told_from_zero_as_well_as_by_the_scatter_alone(count, capsys):
     """Of orbits whose lambda_1 > 0 is certain from a record 100 times as long."""
     certain = before = after = tried = seed = 0
