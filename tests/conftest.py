@@ -4,7 +4,7 @@ import gc
 import os
 import signal
 import sys
-from collections import Counter
+from collections import Counter, defaultdict
 
 import pytest
 
@@ -31,14 +31,14 @@ sys.dont_write_bytecode = False
 if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
-# Two workers begin with these. One compiles the kernels of any oscillator and of compliant stops, and uses them again;
-# the other those of the paper's oscillator, what is built upon them (in one process this takes half the time), and
-# those of branches. With the same kernels to compile, both would do so at the same moment.
+# Two workers begin with these. One compiles the kernels of any oscillator of two masses and of the paper's, then those
+# of orbits and branches of one mass; the other those of compliant stops, then those of branches of two masses. With the
+# same kernels to compile, both would do so at the same moment.
 FIRST = [
     f"test_{name}.py"
     for name in (
-        *("any_oscillator", "system", "compliant_stops", "discontinuity", "models", "energy"),
-        *("energy_of_stops", "continuation", "compliant_orbits", "from_python"),
+        *("any_oscillator", "compliant_stops", "compliant_orbits", "system", "continuation", "discontinuity", "models"),
+        *("energy", "energy_of_stops", "from_python"),
     )
 ]
 
@@ -48,16 +48,32 @@ def pytest_configure(config):
     config.option.loadscopereorder = False
 
 
-@pytest.hookimpl(trylast=True)  # once slow tests are left out
+@pytest.hookimpl(wrapper=True, tryfirst=True)
 def pytest_collection_modifyitems(items):
-    """The files that come first; then those with most tests, so that no worker is left with many in the end."""
-    tests = Counter(item.path for item in items)
+    """Slow are the other cases of tests that are marked `few`; then, without slow tests, what comes first: the files
+    above, and those with most tests, so that no worker is left with many in the end."""
+    mark_all_but_a_few(items)
+    result, tests = (yield), Counter(item.path for item in items)
 
     def place(item):
         name = item.path.name
         return (FIRST.index(name), 0) if name in FIRST else (len(FIRST), -tests[item.path])
 
     items.sort(key=place)
+    return result
+
+
+def mark_all_but_a_few(items):
+    cases = defaultdict(list)
+    for item in items:
+        if item.get_closest_marker("few") and not {"slow", "soak"} & {mark.name for mark in item.iter_markers()}:
+            cases[item.parent.nodeid, item.originalname].append(item)
+    for some in cases.values():
+        (few,) = some[0].get_closest_marker("few").args
+        fast = {k * len(some) // few for k in range(few)}
+        for k, item in enumerate(some):
+            if k not in fast:
+                item.add_marker(pytest.mark.slow)
 
 
 def pytest_collection_finish():

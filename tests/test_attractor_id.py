@@ -62,6 +62,7 @@ def test_how_much_is_read_at_once_does_not_matter(window, room):
     assert np.array_equal(numbers_again(scene_of(WINDOW), window, room), window["attractor_id"])
 
 
+@pytest.mark.slow
 def test_neither_workers_nor_blocks_matter(tmp_path, window, monkeypatch):
     monkeypatch.setattr("vibro_sweep.driver.sweep.points_per_block", lambda *_: 2)
     again = run(tmp_path, WINDOW, workers=2)
@@ -153,6 +154,7 @@ def test_basins_are_in_the_file(tmp_path):
         assert np.array_equal(numbers_again(scene_of(PLANE, f"{OSCILLATOR}, b: 6.734"), data, room), number), room
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("keys", [("x1", "b"), ("b", "x1")])
 def test_initial_states_along_a_parameter(tmp_path, keys):
     """Orbits that differ in where they start are grouped, whichever axis that is; clearances are followed."""
@@ -172,6 +174,7 @@ observe: [attractors]"""
         assert np.array_equal(numbers_again(scene_of(text), data, room), number), room
 
 
+@pytest.mark.slow
 def test_a_plane_of_parameters_is_followed_there_and_back(tmp_path):
     """A window is one, though the first row leaves it before the second comes to it."""
     text = """

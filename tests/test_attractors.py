@@ -148,6 +148,7 @@ def test_basins_against_simulate(basins):
     assert len(kept) == label.max() == 3 and same_partition(slow, label)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("key", ["x1", "v1", "x2", "v2"])
 def test_every_swept_state(tmp_path, key):
     """Alone, and with a number of the system."""
@@ -239,6 +240,7 @@ def test_no_stop_no_bound():
     assert scene_of(f"dynamics: map\n{text}".replace("6.7", "7"), f"{OSCILLATOR}, b: 6.7").shape == (2,)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("stops", ["left", "right", "both"])
 def test_random_starts_of_any_oscillator_are_between_its_stops(stops):
     """With one stop, masses that lie around the stops' middle may all have a gap beyond it: it is moved inside."""

@@ -97,6 +97,7 @@ def test_two_workers_make_the_same_file(file, tmp_path):
     assert numbers(tmp_path / "lr.h5") == numbers(file)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     "begin, parameter, number",
     [

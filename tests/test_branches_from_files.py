@@ -127,6 +127,7 @@ def test_the_numbers_of_the_oscillator_are_those_of_the_special_point(few, tmp_p
         assert along.min() <= value <= along.max()
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(
     "numbers, start, stop, key, words",
     [
@@ -154,6 +155,7 @@ def test_a_file_of_another_kind_is_refused(few, tmp_path):  # noqa: F811
         run_continuation(scene("{sweep: none.h5}", 6.5, 6.8), tmp_path / "no.h5")
 
 
+@pytest.mark.slow
 def test_another_sweep_is_another_run(few, tmp_path):  # noqa: F811
     """A run that began from one sweep does not go on from another one of the same name."""
     copy = tmp_path / "sweep.h5"

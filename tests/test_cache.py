@@ -96,6 +96,7 @@ def small_disk(tmp_path):
     subprocess.run(["umount", place], check=True)
 
 
+@pytest.mark.slow
 def test_a_full_disk(program, small_disk):
     with (small_disk / "full").open("wb", buffering=0) as file:
         while file.write(b"\0" * 512) == 512:

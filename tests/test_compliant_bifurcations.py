@@ -55,7 +55,7 @@ def compare(special):
     return np.abs(off).max()
 
 
-@pytest.mark.parametrize("name", ["one mass", *slow_cases(*[name for name in BRANCHES if name != "one mass"])])
+@pytest.mark.parametrize("name", slow_cases(*BRANCHES))
 def test_special_points_of_branches_in_45_digits(name):
     branch, compared = branch_of(name), 0
     assert not compliant_branches.unexplained(branch)
@@ -115,6 +115,7 @@ def test_newton_converges_on_curves(names, bounds):
         assert changes[6] < 1e-12 and changes[4] < 10 * changes[2] ** 1.5 + 1e-14, (special.type, changes)
 
 
+@pytest.mark.slow
 def test_folds_run_beside_grazes():
     """Without a preload the branch of short contacts turns at a fold just beside the graze; both can be followed."""
     branch = branch_of("one mass")
@@ -254,6 +255,7 @@ def test_points_of_curves_are_orbits_with_their_multipliers(of, names, bounds):
     assert compared >= 5
 
 
+@pytest.mark.slow
 def test_windows_of_one_elastic_stop():
     """Every window has a label at both ends, and the motion there is stable inside and gone or unstable beyond."""
     system = one_mass(zeta=0.01, base=True, F=0.9 / 1.26, tau=np.pi / 2)

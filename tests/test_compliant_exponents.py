@@ -31,6 +31,7 @@ def test_exponents_of_an_orbit_against_eighty_digits():
     hold([report])
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("masses, z, k, part", [
     (1, 2, 100, 0.04),
     (1, 1, 10, 0.2),
@@ -91,7 +92,7 @@ def test_sums_of_exponents(seeds):
         assert report.worst < MOST and report.apart < LESS * MOST, report
 
 
-@pytest.mark.parametrize("count", [1, *slow_cases(20), pytest.param(RELAXING, marks=pytest.mark.soak)])
+@pytest.mark.parametrize("count", [*slow_cases(1, 20), pytest.param(RELAXING, marks=pytest.mark.soak)])
 def test_sums_with_stops_that_are_touched_while_they_relax(count):
     """Motion has one multiplier more than states there; where it is one of a pair with the last one both count."""
     reports = [compliant_sums.summed_relaxing(seed) for seed in range(count)]

@@ -14,6 +14,7 @@ import vibro_sweep as vs
 # --- against a simulator in forty digits; random oscillators: test_compliant_contacts.py
 
 
+@pytest.mark.few(8)
 @pytest.mark.parametrize("stiffness", [29, 1e4, 1e8])
 @pytest.mark.parametrize("release", ["displacement", "force"])
 @pytest.mark.parametrize("ratio, preload", [(0, 0), (0.1, 0.3), (1.0, 0), (1.0, 0.3)])
@@ -43,6 +44,7 @@ def restitution_of(z, release):
     return math.exp(-2.0) if z == 1 else math.exp(-2 * z / root * math.atanh(root / z))
 
 
+@pytest.mark.few(6)
 @pytest.mark.parametrize("stiffness", [1.0, 1e4, 1e8])
 @pytest.mark.parametrize("z", [0.0, 0.07, 0.5, 0.99, 1.0, 2.0])
 def test_restitution_of_a_free_mass(stiffness, z):
@@ -56,6 +58,7 @@ def test_restitution_of_a_free_mass(stiffness, z):
             assert -contact["v_release"] / contact["v_touch"] == pytest.approx(expected, rel=1e-12, abs=1e-12)
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("release", ["displacement", "force"])
 @pytest.mark.parametrize("stiffness", [1.0, 1e2, 1e4, 1e6, 1e8])
 def test_restitution_in_a_plane_of_clearance_and_damping(stiffness, release):

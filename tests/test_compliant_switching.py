@@ -39,6 +39,7 @@ LAWS = [
 ]
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("law", LAWS, ids=str)
 def test_two_contacts_that_differ_vanish_together_where_the_free_motion_grazes(law):
     system = one_mass(**law)
@@ -72,6 +73,7 @@ def test_windows_of_stops_that_differ_end_where_the_free_motion_grazes():
     assert ends == [("LR", "boundary", "graze"), ("", "graze", "boundary")]
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("flips, other, bounds, count", [([0, 1], "b", (0.1, 2), 4), ([1], "k_stop", (5, 2000), 1)])
 def test_curves_of_doubled_orbits_with_contacts_begin_at_a_degenerate_flip(soft_branch, flips, other, bounds, count):
     """A flip, and the fold that begins there: its orbits of two periods have a multiplier 1, and it leads back."""
@@ -111,6 +113,7 @@ def test_the_orbit_beside_a_graze_comes_to_it():
 BOTH = {"k_stop": 30.0, "k_stop_left": 30.0, "c_stop": 1.0, "c_stop_left": 1.0, "preload": 0.1, "preload_left": 0.1}
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("name", BOTH)
 def test_a_symmetric_orbit_does_not_stay_so_along_a_number_of_one_stop(name):
     """Its branch said ok of halves of orbits that are not there."""
@@ -134,6 +137,7 @@ def test_a_curve_of_grazes_that_leaves_its_bounds_at_no_preload_has_no_point_the
         assert all(one.type == "boundary" for one in curve.special if abs(one.parameters["preload"]) < 1e-9)
 
 
+@pytest.mark.slow
 def test_a_resonant_graze_whose_test_is_nearly_flat_is_one_point_with_its_error():
     """Multipliers of 1e-10: rounding changed the sign of the test at up to six places, with errors of 5e-11."""
     numbers = {"k": 1, "zeta": 0.08655, "F": 1.41046, "omega": 0.49928, "b": 0.16023, "tau": -1.61125}
@@ -194,6 +198,7 @@ def test_a_curve_keeps_within_its_bounds_where_a_preload_vanishes(soft_branch, t
     assert vs.load(tmp_path / "curve.h5").points.equals(curve.points)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("bounds", [(20, 3e8), (1, 1e9)])
 def test_a_branch_goes_from_soft_to_rigid_within_wide_bounds(bounds):
     branch = vs.continue_orbit(vs.periodic_orbit(one_stop(), itinerary="R"), "k_stop", bounds)

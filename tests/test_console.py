@@ -32,7 +32,7 @@ def shell(command):
     return subprocess.run(["bash", "-c", text], capture_output=True, text=True, timeout=LIMIT, check=False)
 
 
-@pytest.mark.parametrize("closed", [">&- 2>&- <&-", *slow_cases("2>&-", ">&-", "<&-")])
+@pytest.mark.parametrize("closed", slow_cases(">&- 2>&- <&-", "2>&-", ">&-", "<&-"))
 def test_closed_streams(folder, closed):
     """And no message of a library can reach the data file by the number of a closed stream."""
     done = shell(f"vibro-sweep run good.yaml {closed}")

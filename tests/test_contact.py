@@ -161,6 +161,7 @@ def polynomial_table(search, kind, count, rng):
     return rows
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("search", SEARCHES)
 @pytest.mark.parametrize("kind", ["graze", "leaving", *slow_cases("double", "inflection", "cubic")])
 def test_polynomials(kind, search):

@@ -114,6 +114,7 @@ def test_an_orbit_marks_its_contacts():
     assert [sum(line.get_label() == "contact" for line in ax.lines) for ax in fig.axes] == [1, 1]
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(
     "values, scale", [([1, 2, 5, 10, 20, 50, 100], "log"), ([1, 10, 20, 30, 100], "linear"), ([1, 2, 5, 10], "linear")]
 )

@@ -242,3 +242,9 @@ def test_steps_to_masses_that_are_not_positive(recwarn):
     assert first.ahead(0.05) is None  # 1 - 0.05 * 40 is negative
     assert first.ahead(0.01).value == pytest.approx(0.6)
     assert not recwarn.list
+
+
+def test_a_rigid_stop_has_no_numbers_of_a_compliant_one():
+    orbit = vs.periodic_orbit(PAPER.replace(b=4.0), itinerary="R")
+    with pytest.raises(vs.VibroSweepError, match=r"'c_stop' is not allowed; it must be one of mu_m, .*, R, b, offset"):
+        vs.continue_orbit(orbit, "c_stop", (0, 1))

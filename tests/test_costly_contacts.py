@@ -34,6 +34,7 @@ def test_a_strong_damper_costs_no_steps(damping):
 RINGING = SYSTEM.replace(b=-1, stops="right", c_stop=0)  # a stop without a damper, on which the mass lies
 
 
+@pytest.mark.slow
 def test_a_contact_of_too_many_steps_says_so():
     system = RINGING.replace(k_stop=1e14)
     orbit = vs.simulate(system, (-1, 0), 5)
@@ -43,6 +44,7 @@ def test_a_contact_of_too_many_steps_says_so():
     assert data["status"].values.tolist() == [0, 3] and np.isnan(data["x1"].values[1]).all()
 
 
+@pytest.mark.slow
 def test_ctrl_c_ends_a_long_contact():
     system = RINGING.replace(k_stop=1e9)
     timer = threading.Timer(0.5, lambda: os.kill(os.getpid(), signal.SIGINT))

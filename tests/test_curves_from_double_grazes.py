@@ -17,6 +17,7 @@ def listed(curve):
     return sorted(points, key=lambda point: point[1:])
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("bounds", [((0.229, 1.5), (-0.5, 0.5)), ((0.2, 1.2), (-0.3, 0.5)), ((0.3, 1.0), (-0.4, 0.4))])
 def test_the_curve_is_the_same_from_a_touch_and_from_both(bounds):
     """Beside the double graze multipliers move like the square root of the distance: from 1.52 to 1 within 1.3e-8."""

@@ -63,6 +63,7 @@ def test_a_changed_digit_of_a_periodic_orbit(kinds, tmp_path):
             vs.load(path)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     "attribute", ["kind", "provenance", *slow_cases("scene", "quantities", "parameters", "title", "format")]
 )
@@ -98,6 +99,7 @@ REFUSED_LATE = {  # kind of the file, its dataset or attribute, the value in it,
 }
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     "case",
     [

@@ -72,6 +72,7 @@ def error_and_condition(case):
         return float(distance(found, exact) / size), float(condition / size)
 
 
+@pytest.mark.few(5)
 @pytest.mark.parametrize("case", [*FEW, *slow_cases(*(case for case in CASES if case not in FEW))])
 def test_flight_over_a_period(case):
     """To 1e-12; but where rounding the inputs alone makes 6.6e-9 of it, 2.1e-12 is what was reached."""

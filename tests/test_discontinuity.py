@@ -126,7 +126,6 @@ def spectrum(step, X, periods, before=0):
     return logs / time, volume / time
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("b", "order"), [(6.6, 1), *slow_cases((6.8, 2), (6.6, 2), (6.69, 1), (6.69, 2), (6.8, 1))])
 def test_exponents_add_up_to_the_logarithm_of_the_determinant(tmp_path, b, order):
     step = vs.discontinuity_map(PAPER.replace(b=b), order)
@@ -140,7 +139,6 @@ def test_exponents_add_up_to_the_logarithm_of_the_determinant(tmp_path, b, order
             assert float(data.lyapunov.sum()) == pytest.approx(PAPER.divergence, abs=1e-12)
 
 
-@pytest.mark.slow
 def test_the_drivers_exponents_are_those_of_the_jacobians(tmp_path):
     scene = SCENE + "order: 2\norbit: {transient: 2000, record: 400}\nobserve: [section, lyapunov, impacts]"
     vs.run(parse_scene(scene), tmp_path / "map.h5")
@@ -155,7 +153,6 @@ def test_the_drivers_exponents_are_those_of_the_jacobians(tmp_path):
         np.testing.assert_allclose(data.lyapunov, np.sort(exponents)[::-1], atol=1e-4)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("order", "b", "mirrored"), [(1, 6.5, 0), (2, 6.5, 0), (2, 6.6, 1)])
 def test_the_driver_iterates_the_map(tmp_path, order, b, mirrored):
     scene = SCENE.replace("b: 6.6", f"b: {b}") + f"order: {order}\nstart: {{x1: 6.5, v1: 0.1}}\n"
@@ -223,7 +220,6 @@ def test_what_a_scene_of_the_map_must_not_say(text, message):
         parse_scene(text + ORBIT)
 
 
-@pytest.mark.slow
 def test_points_beyond_the_stops_are_starts_of_the_map_alone(tmp_path):
     start = ORBIT.replace("500", "0") + "start: {x1: 7}\n"
     with pytest.raises(SceneError, match=r"start.x1 = 7"):

@@ -25,6 +25,7 @@ def with_methods():
                     yield f"{name}.{method}", function
 
 
+@pytest.mark.few(12)
 @pytest.mark.parametrize("name, one", [*with_methods()])
 def test_an_example_gives_what_it_shows(name, one, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)

@@ -39,6 +39,7 @@ def test_what_users_add_does_not_matter(folder, capsys):
     assert vs.run(SCENE, "x.h5", mode="resume").bad == 0
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("name", ["x1", "status"])
 @pytest.mark.parametrize("how", LINKS)
 def test_no_number_is_read_from_elsewhere(folder, capsys, how, name):
@@ -77,6 +78,7 @@ def test_no_number_is_written_elsewhere(folder, capsys, how):
 # Files that somebody has edited
 
 
+@pytest.mark.few(8)
 @pytest.mark.parametrize("edit", EDITS)
 def test_an_edited_file_is_refused(folder, capsys, edit):
     with h5py.File("x.h5", "a") as file:
@@ -97,6 +99,7 @@ def test_a_missing_dataset_that_is_not_missed_by_the_file_itself(folder, capsys)
     refused(capsys, ["run", "scene.yaml", "-o", "x.h5", "--resume"], "it has no x1")
 
 
+@pytest.mark.slow
 def test_a_status_that_nobody_knows(folder, capsys):
     with h5py.File("x.h5", "a") as file:
         file["status"][3] = 99
@@ -119,6 +122,7 @@ BOMB = "a: &a {x: 1}\n" + "".join(
 )
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     "text", [BOMB, "a: &a [*a]", *slow_cases("[" * 20_000, "- 2001-99-99", "\0", "=: =", "!!python/name:os.system")]
 )

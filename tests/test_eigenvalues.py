@@ -71,6 +71,7 @@ COUPLINGS = {  # of two groups of modes, beside those within a group, which are 
 }
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("coupled", COUPLINGS)
 def test_small_eigenvalues_of_graded_matrices_keep_their_digits(coupled):
     """D^1/2 B D^1/2 with D from 1e6 to 1e-24 and a well-conditioned B, as products of factors give it."""

@@ -17,6 +17,7 @@ def of_the_free_motion(system):
     return np.exp(np.array([rate, rate.conjugate()]) * system.period)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("system", [ELASTIC, DAMPED], ids=["elastic", "damped"])
 @pytest.mark.parametrize("upper", [2.5, 2.6, 3.0, 4.0])
 def test_all_bifurcations_are_kept_whatever_the_bounds(system, upper):
@@ -28,6 +29,7 @@ def test_all_bifurcations_are_kept_whatever_the_bounds(system, upper):
     assert all(one.error < 1e-13 for one in branch.special)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("system", [ELASTIC, DAMPED], ids=["elastic", "damped"])
 @pytest.mark.parametrize("before", [1e-4, 1e-6, 1e-8, 1e-10])
 def test_bounds_just_before_the_graze_hold(system, before):

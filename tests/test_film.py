@@ -44,6 +44,7 @@ def test_of_two_starts_the_first_is_shown():
     assert first.get_x() + first.get_width() / 2 == pytest.approx(place, abs=1e-12)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("suffix", [".gif", ".mp4"])
 def test_files(data, tmp_path, few, suffix):
     """A file that nobody has changed is replaced; the suffix asks for a film."""
@@ -62,6 +63,7 @@ def test_files(data, tmp_path, few, suffix):
         vs.plot(data, output=place)
 
 
+@pytest.mark.slow
 def test_width_and_resolution_are_those_asked_for(data, tmp_path, few):
     place = tmp_path / "narrow.gif"
     vs.plot(data, "film", at={"b": 4.0}, width=101.6, dpi=60, output=place)
@@ -69,6 +71,7 @@ def test_width_and_resolution_are_those_asked_for(data, tmp_path, few):
         assert moving.size[0] == 240
 
 
+@pytest.mark.slow
 def test_from_the_command_line(tmp_path, few, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     vs.sweep(SYSTEM, {"b": [4.0]}, transient=50, record=10, trajectory={"periods": 1, "samples": 60}, output="one.h5")

@@ -47,6 +47,7 @@ def test_motion_solves_the_equations(params):
     assert abs(rest.pull.derivatives(u, 1)[0] - pull) < mpf("1e-45")
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     "params", [pytest.param(p, marks=[pytest.mark.slow] * (p["mu_m"] < 0.01)) for p in SYSTEMS], ids=str
 )
@@ -124,6 +125,7 @@ def contact_of_order(order, rng):
                 return params, state, float(begin)
 
 
+@pytest.mark.few(6)
 @pytest.mark.parametrize("order, seed", [(3, seed) for seed in range(6)] + [(4, seed) for seed in range(12)])
 def test_contact_without_speed_and_acceleration(order, seed):
     """Also without jerk (order 4): the orbit goes on as the exact one does, with an impact within rounding or none."""

@@ -40,6 +40,7 @@ def put_together(scene, found):
     return result, data
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     "changes",
     [

@@ -10,7 +10,6 @@ import h5py
 import jsonschema
 import numpy as np
 import pytest
-from support import slow_cases
 from support.fuzz_scenes import broken, scene, to_yaml
 from support.scenes import assert_same_bits, computed
 
@@ -34,11 +33,11 @@ BEYOND_THE_SCHEMA = re.compile(
 
 counts = pytest.mark.parametrize(
     "count",
-    [*slow_cases(20, 800), pytest.param(10_000, marks=pytest.mark.soak)],
+    [20, pytest.param(800, marks=pytest.mark.slow), pytest.param(10_000, marks=pytest.mark.soak)],
 )
 run_counts = pytest.mark.parametrize(
     "count",
-    [*slow_cases(25, 400), pytest.param(2000, marks=pytest.mark.soak)],
+    [25, pytest.param(400, marks=pytest.mark.slow), pytest.param(2000, marks=pytest.mark.soak)],
 )
 
 

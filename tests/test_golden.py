@@ -29,6 +29,7 @@ def wrong(kind: str, records: dict) -> dict[str, list[str]]:
     return {name: lines for name, lines in found.items() if lines}
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("kind", [kind for kind in files.KINDS if FEW[kind]])
 def test_a_few(kind):
     assert wrong(kind, chosen(kind, lambda record: record["name"] in FEW[kind])) == {}
@@ -113,6 +114,7 @@ def one():
     return record, branches.followed(record)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("change", [*CHANGES[:5], *slow_cases(*CHANGES[5:])])
 def test_the_comparison_sees(one, change):
     record, branch = one

@@ -23,6 +23,7 @@ ORBITS = {
 }
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("name", "count"),
     [

@@ -19,6 +19,7 @@ from vibro_sweep.store import StoreError
 # Readers write nothing
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("name", ["x.h5", "y.h5.part", "victim.h5"])
 def test_readers_change_nothing(folder, capsys, name):
     (folder / "victim").write_text("years of work")

@@ -60,6 +60,7 @@ def contents(folder) -> dict[str, bytes]:
     return {str(path): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
 
 
+@pytest.mark.few(5)
 @pytest.mark.parametrize(
     "command",
     [
@@ -119,6 +120,7 @@ def test_a_picture_replaces_nothing_that_it_shows(folder, capsys):
     assert contents(folder) == before
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     "name, dataset, command",
     [
@@ -142,6 +144,7 @@ def test_a_damaged_file_is_not_complete_and_resume_mends_it(folder, capsys, name
     assert numbers(name) == whole
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(
     "name, edit",
     [

@@ -82,6 +82,7 @@ def test_a_small_kernel_tells_whether_numba_is_as_expected_inside(change, outcom
     assert start() == "False"  # what is kept is not tried again
 
 
+@pytest.mark.slow
 def test_an_untested_numba_compiles_plainly_and_says_so(tmp_path):
     program = UNTESTED + "import logging; logging.basicConfig(level=logging.INFO);"
     program += "import numpy as np; from vibro_sweep.engine.simd import jit, self_test;"

@@ -92,6 +92,7 @@ def test_numbers_lie_in_their_regions_of_many_planes(tmp_path):
     assert searched(np.random.default_rng(1), tmp_path, 120) > 200
 
 
+@pytest.mark.slow
 def test_ticks_of_a_colour_bar():
     """Of bars with arrows at their ends, which take a part of their place: 0 is kept, and what else has room."""
     thinned = 0
@@ -200,6 +201,7 @@ def test_curves_of_one_type_are_told_apart_by_their_periods():
     assert len(told) == len(drawn_curves.ORBITS) + 1 and told[-1] == "graze, longer periods"
 
 
+@pytest.mark.slow
 def test_a_plane_says_what_its_hatching_means(tmp_path):
     rng = np.random.default_rng(3)
     file, _ = planes_of(rng, tmp_path, "p.h5", True)

@@ -63,6 +63,7 @@ def heights(frames, columns, starts, record):
     return result
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("start", [{}, {"random": 2, "seed": 7}, {"follow": "both"}], ids=["rest", "random", "follow"])
 def test_the_final_picture_has_the_bits_of_the_sweep(page, view, start):
     view |= {"start": start, "low": 5.3, "high": 5.9}
@@ -159,7 +160,6 @@ def test_a_newer_diagram_ends_the_following_of_a_window(page, view):
     assert words["seq"] == 4 and words["period"] == 13
 
 
-@pytest.mark.slow
 def test_a_mapping_is_swept_and_saved_as_one(page, tmp_path, monkeypatch):
     view = answers(page, "open", 1, name="figure_06")[0]["view"] | {"columns": 16, "transient": 100, "record": 20}
     assert view["dynamics"] == "map"
@@ -310,6 +310,7 @@ def memory(program):
     return int(status.partition("VmRSS:")[2].split()[0]) / 1000  # MB
 
 
+@pytest.mark.slow
 def test_a_page_that_does_not_read_costs_others_nothing(program, page, view):
     answers(page, "sweep", 2, view=view)
     before = memory(program)
@@ -357,6 +358,7 @@ def test_the_scene_of_a_file_comes_first(tmp_path):
         assert running.end()[0] == 0
 
 
+@pytest.mark.slow
 def test_a_thousand_connections(program, page, view):
     """Those that say nothing take little memory, those without a token get 403, and a page is answered beside them."""
     before = memory(program)

@@ -29,6 +29,7 @@ def orbit_of(system, itinerary):
     return orbit
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize(("system", "itinerary", "name", "bounds"), ORBITS, ids=IDS)
 def test_special_points_are_where_their_equations_hold(system, itinerary, name, bounds):
     """Where a test vanishes along the branch, beside Newton's method for the orbit and the parameter at once, with the

@@ -39,6 +39,7 @@ def exponents(system):
         return np.array(sorted((float(mp.re(one)) for one in mp.eig(A)[0]), reverse=True))
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("masses", [*slow_cases(2, 3, 4), 1])
 @pytest.mark.parametrize("release", ["displacement", "force"])
 @pytest.mark.parametrize("k, z", LAWS)
@@ -55,6 +56,7 @@ def test_exponents_of_a_mass_that_stays_on_its_stop(masses, k, z, release):
     assert np.all(error <= 3 * data.lyapunov_error.values)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("masses", [*slow_cases(2, 3), 1])
 @pytest.mark.parametrize("k, z", [(400, 0.3), *slow_cases((400, 1.5)), (16, 5)])
 @pytest.mark.parametrize("release", ["displacement", "force"])
@@ -67,6 +69,7 @@ def test_exponents_of_long_contacts_that_end(masses, k, z, release):
     assert np.all(report.errors <= 3 * report.stated) and report.stated.max() < 1e-11
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     "masses, k, z", [(1, 1e4, 0.5), *slow_cases((1, 1e6, 0.2), (2, 1e4, 1.5), (3, 1e4, 0.3), (2, 100, 12))]
 )

@@ -28,6 +28,7 @@ def exact(B, R, t, motion):
         return sorted((float(mp.log10(abs(value))) for value in mp.eig(M)[0]), reverse=True)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("fastest", [0.3, 300.0])  # acceleration before an impact: the shear is small, or large
 @pytest.mark.parametrize("R", [0.8, 1e-3, *slow_cases(0.3, 0.1)])
 def test_each_multiplier_keeps_its_digits(R, fastest):

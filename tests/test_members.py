@@ -10,6 +10,7 @@ from vibro_sweep.analysis.periodic.periodic_orbit import orbit_of
 from vibro_sweep.analysis.windows.members import members, solution_in
 
 
+@pytest.mark.slow
 def test_section_states_are_those_of_simulated_orbits(few):  # noqa: F811
     """Of symmetric and other orbits, on both sides of the middle, and of the free motion; and the mirror images."""
     windows = [window for window in vs.windows(few) if window.lo > 5.1]

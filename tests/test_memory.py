@@ -77,6 +77,7 @@ MORE = {"failing": (FAILING,), "hasty": (HASTY,)}
 AGAIN = "compliant, follow", "compliant, force"
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(
     "name",
     [*(name for name in SCENES if name != "attractors"), *MORE, "compliant", *slow_cases(*AGAIN)],

@@ -36,6 +36,7 @@ def point(tmp_path, values, transient):
     return data.isel(b=0)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("values", "transient"),
     [*CASES[:3], *slow_cases(*CASES[3:])],

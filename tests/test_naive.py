@@ -109,6 +109,7 @@ def test_graze_of_the_steady_motion(depth):
         assert abs(impacts[0].v1 / (omega * mp.sqrt(b_star**2 - b**2)) - 1) < mpf("1e-5")
 
 
+@pytest.mark.slow
 def test_chatter_ends_in_sticking():
     params = {**PAPER, "b": 0.3, "R": 0.2, "omega": 0.5, "mu_m": 3.0}
     orbit = naive.simulate(params, (0, 0, 0, 0), periods=0.8)

@@ -32,6 +32,7 @@ def told(tmp_path, program: str) -> str:
     return done.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "before, expected",
     [

@@ -35,6 +35,7 @@ def run(folder, text, system=PAPER, orbit=ORBIT):
     return scene, path
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("tau", ["grazing", *slow_cases("1.25")])
 @pytest.mark.parametrize("kind", SWEEPS)
 def test_every_number_of_every_point_is_in_the_file(tmp_path, kind, tau):
@@ -70,7 +71,6 @@ def test_every_number_of_every_point_is_in_the_file(tmp_path, kind, tau):
         } - set(scene.sweep))  # fmt: skip
 
 
-@pytest.mark.slow
 def test_words_of_maps_and_impact_sections(tmp_path):
     text = "dynamics: map\norder: 2\nexpand_at: 6.7107356\norbit: {transient: 3, record: 4}"
     _, path = run(tmp_path, text, orbit="")

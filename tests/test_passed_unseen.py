@@ -165,6 +165,7 @@ def loaded():
     return Case(vs.switch(birth)[0], "b", bounds)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("factor", [1, 2, 3])
 def test_a_pair_that_becomes_two_of_which_a_flip_takes_one_back(loaded, factor):
     """All that within one long step: its ends differ by what a flip does, and a neutral saddle hides the torus."""

@@ -32,7 +32,7 @@ def stretch(numbers, name, start, bounds, b):
     return ends
 
 
-@pytest.mark.parametrize("count", [4, *slow_cases(40), pytest.param(400, marks=pytest.mark.soak)])
+@pytest.mark.parametrize("count", [*slow_cases(4, 40), pytest.param(400, marks=pytest.mark.soak)])
 def test_no_peak_of_the_free_motion_is_passed(count, capsys):
     """Random oscillators with two narrow resonances, along omega and the ratios: both ends of the branch without
     impacts, against samples that lie far closer than the peaks are wide."""

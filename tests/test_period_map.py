@@ -97,6 +97,7 @@ LONG = {
 }  # for the slow simulator
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("case", [pytest.param(case, marks=[pytest.mark.slow] * (case in LONG)) for case in CASES])
 def test_derivatives_against_thirty_digits(case):
     params, state, periods, sides, rests = CASES[case]
@@ -144,6 +145,7 @@ def test_start_at_rest_on_a_stop():
             np.testing.assert_allclose(column, [float(x / h) for x in there], rtol=0, atol=1e-10)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("depth", [1e-2, 1e-5, 1e-8])
 def test_next_to_a_graze(depth):
     """Entries grow like 1/v1; rounding of the state acts on them like 1/v1^2."""

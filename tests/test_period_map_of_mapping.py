@@ -27,6 +27,7 @@ def slow_map(order, expand_at, params, X, periods):
     return list(-slow.middle(X) if periods == 0.5 else slow(X))
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("expand_at", [None, *slow_cases(6.7107356)])
 @pytest.mark.parametrize("order", [1, 2])
 @pytest.mark.parametrize("periods", [0.5, 1])

@@ -19,6 +19,7 @@ def least_on_the_stop(value, system, parameter):
     return static - there.b - there.F / abs(k - there.omega**2 + 1j * there.omega * c)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("numbers, parameter, bounds", [
     (PRESSED, "F", (0.01, 5)),
     *slow_cases(

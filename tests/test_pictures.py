@@ -19,7 +19,7 @@ from vibro_sweep.plotting import PlotError
 SUFFIXES = (".png", ".svg", ".pdf")
 
 
-@pytest.mark.parametrize("suffix", [SUFFIXES[0], *slow_cases(*SUFFIXES[1:])])
+@pytest.mark.parametrize("suffix", slow_cases(*SUFFIXES))
 def test_a_picture_of_ours_is_drawn_anew_until_somebody_changes_it(folder, suffix):
     (path,) = plotting.plot("x.h5", f"a{suffix}")
     first = path.stat().st_ino
@@ -42,6 +42,7 @@ def test_a_picture_of_ours_is_drawn_anew_until_somebody_changes_it(folder, suffi
     assert not [name for name in os.listdir() if name.startswith(".")]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("suffix", [".png", *slow_cases(".svg", ".pdf")])
 def test_a_seal_makes_no_picture_worse(folder, suffix):
     """It is a chunk of text, or a comment."""

@@ -69,6 +69,7 @@ def test_a_picture_in_the_axes_of_the_caller(line, kind):
     assert len(drawn(fig))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("variables", [["lyapunov", "section"], *slow_cases(["section"], ["impacts"])])
 def test_a_plane_in_the_axes_of_the_caller(variables):
     data = vs.sweep(SYSTEM, {"b": [6.5, 6.6, 6.7], "R": [0.7, 0.8]}, observe=variables, **SHORT)
@@ -77,6 +78,7 @@ def test_a_plane_in_the_axes_of_the_caller(variables):
     assert np.array_equal(ax.images[0].get_array(), vs.plot(data).axes[0].images[0].get_array())
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(
     "call, message",
     [

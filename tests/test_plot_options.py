@@ -166,6 +166,7 @@ def test_commands(here, file, arguments, kind, options):
         assert matplotlib.image.imread("a.png").shape[:2] == (150, 200)
 
 
+@pytest.mark.few(6)
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
@@ -216,6 +217,7 @@ def test_a_single_point_has_no_sweep_to_choose_from(files):
         plotting.figure(files / "one.h5", options=PlotOptions(at={"b": 6.6}))
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("kind", ["history", "configuration", "iteration"])
 def test_the_scene_names_its_picture(tmp_path, kind):
     """As those of the paper's figures 3 and 4 do, whose data are those of figure 2."""

@@ -37,6 +37,7 @@ def test_the_suffix_is_the_format(sweep, tmp_path, suffix, magic):
     assert output.read_bytes().startswith(magic)
 
 
+@pytest.mark.slow
 def test_the_picture_lies_in_the_current_folder_unless_told_otherwise(sweep, tmp_path, monkeypatch):
     (tmp_path / "here").mkdir()
     monkeypatch.chdir(tmp_path / "here")

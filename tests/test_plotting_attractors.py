@@ -194,6 +194,7 @@ def test_words():
     assert kind(6, average) == "even" and describe(6, average) == "period 6, 2 impacts right, 2 left"
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     "text",
     [
@@ -216,6 +217,7 @@ def test_empty_axes_say_why(tmp_path, text):
         assert all(any("all points failed" in text.get_text() for text in ax.texts) for ax in panels), one
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("law, words", [
     ("k_stop: 10", {"period 1, 1 contact right, 1 left", "without contact, period 1"}),
     ("k_stop: 10, R_left: 0.7", {"period 1, 1 impact right, 1 left", "non-impacting, period 1"}),

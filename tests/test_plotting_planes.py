@@ -92,6 +92,7 @@ def test_what_has_no_number_is_hatched_and_named(plane):
     assert [text.get_text() for text in fig.legends[0].get_texts()][1:] == ["no number"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("value", [-0.02, *slow_cases(0.03, 0.0)])
 def test_plane_of_one_sign(tmp_path, value):
     coordinates = {"b": [1.0, 2.0], "R": [0.1, 0.2]}
@@ -119,6 +120,7 @@ def test_no_numbers_no_grazing_curve(tmp_path):
     assert not plotting.figure(file).axes[0].lines
 
 
+@pytest.mark.slow
 def test_planes_relative_to_the_grazing_clearance(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     axes = {"b": np.linspace(3, 5, 5), "omega": np.linspace(0.6, 0.606, 4)}

@@ -116,6 +116,7 @@ def test_lost_blocks_are_sent_again(tmp_path, whole):
     assert_same_bits(arrays_of(tmp_path / "out.h5"), whole)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     "error, attempts, words",
     [
@@ -160,6 +161,7 @@ def test_a_worker_with_other_code_refuses():
         compute(block._replace(version="vibro_sweep 9, code 0"))
 
 
+@pytest.mark.slow
 def test_a_broken_process_pool_is_resumed(tmp_path, whole):
     scene, output = scene_of(FOLLOW), tmp_path / "out.h5"
     with ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn")) as pool:

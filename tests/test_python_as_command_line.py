@@ -61,6 +61,7 @@ def test_the_graze_of_a_scene_of_branches_is_that_of_its_oscillator(folder, caps
     assert "b*    = 6.7057167409730" in capsys.readouterr().out
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("of, command", [("sweep", "run"), ("lr", "run"), ("sweep", "windows")])
 def test_files_are_those_of_the_command_line(folder, tmp_path, of, command):
     given, made = ("sweep.h5", "sweep.windows.h5") if command == "windows" else (f"{of}.yaml", f"{of}.h5")
@@ -168,6 +169,7 @@ OPTIONS = [
 ]
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("options, given", OPTIONS)
 def test_pictures_are_those_of_the_command_line(folder, tmp_path, monkeypatch, options, given):
     monkeypatch.chdir(folder)

@@ -23,7 +23,7 @@ def slow(kind, seeds, mark):
 @pytest.mark.parametrize(
     ("kind", "seeds"),
     [
-        ("systems", range(1)),
+        slow("systems", range(1), pytest.mark.slow),
         slow("systems", range(6), pytest.mark.slow),
         slow("oscillators", range(4), pytest.mark.slow),
         slow("systems", range(200), pytest.mark.soak),

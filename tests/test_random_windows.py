@@ -133,6 +133,7 @@ def test_an_orbit_without_a_window_of_its_own_is_in_the_one_that_covers_it(few):
     assert list(REASONS)[search.reason[row][i, j]] == "in_a_window"
 
 
+@pytest.mark.slow
 def test_orbits_of_a_window_beside_its_birth_are_its_own(tmp_path):
     """On a chord between two points of the branch Newton's method found the symmetric parent, which is unstable."""
     damper = vs.Oscillator.named("ball_in_cavity", **DAMPER, R=0.9277676484139388, b=1.3055893820201745)

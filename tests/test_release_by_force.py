@@ -50,6 +50,7 @@ def grazes_at(branch, omega):
     return min(found, key=lambda one: abs(one.parameters["omega"] - omega))
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("c_stop, kinds", [
     (0.5, ("persistence", "persistence")), (2.0, ("persistence", "nonsmooth fold")),
 ])  # fmt: skip
@@ -89,6 +90,7 @@ def test_without_a_damper_both_releases_are_one():
     assert vs.periodic_orbit(one_mass(), itinerary="R").state == pytest.approx(other.state, abs=1e-12)
 
 
+@pytest.mark.slow
 def test_stops_that_have_not_relaxed_are_refused():
     """Where e^{-k D/c} (1 + k/(c omega)) is not below rounding at the next touch, a time D after the release."""
     orbit = vs.periodic_orbit(one_mass(c_stop=10), itinerary="R")

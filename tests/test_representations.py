@@ -54,6 +54,7 @@ def objects(kinds):
     }
 
 
+@pytest.mark.slow
 def test_ten_lines(objects):
     for name, one in objects.items():
         text = repr(one)

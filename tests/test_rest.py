@@ -79,6 +79,7 @@ def compare(case, digits=30):
     return len(exact.sticking), worst
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("case", QUICK)
 def test_rests(case):
     rests, worst = compare((*case[:2], 2))
@@ -264,6 +265,7 @@ def test_exponents_of_a_rest_that_outlasts_the_record():
     assert np.isneginf(exponents[2:]).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("numbers", [LIGHT[0], *slow_cases(*LIGHT[1:])])
 def test_a_light_mass_while_the_other_rests(numbers):
     """At the release the exact pull on M1 is zero, but for the rounding of the time."""

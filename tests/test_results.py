@@ -102,6 +102,7 @@ def test_branches_of_other_orbits(system, begin, tmp_path):
     same_specials(branch.special, again.special)
 
 
+@pytest.mark.slow
 def test_a_curve(branch, tmp_path):
     ends = {"neimark_sacker": ((3.8, 4.5), (0.6, 0.66)), "graze": ((3.0, 3.5), (0.62, 0.64))}
     for kind, bounds in ends.items():
@@ -119,6 +120,7 @@ def test_a_curve(branch, tmp_path):
             assert data.attrs["kind"] == "curves" and data.equals(again.to_xarray())
 
 
+@pytest.mark.slow
 def test_windows(tmp_path):
     swept = vs.sweep(
         SYSTEM, {"b": np.linspace(6.4, 6.65, 8)}, observe=["section"], transient=800, record=200, workers=1

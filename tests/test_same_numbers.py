@@ -22,6 +22,7 @@ from vibro_sweep.scene import parse_scene
 SMALL = ("random", "follow", "attractors", "basins", "compliant")
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     "name",
     [
@@ -59,6 +60,7 @@ observe: [section, lyapunov, impacts]
             assert together[key][box].tobytes() == values.tobytes(), (box, key)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("name", ["random", "compliant"])
 def test_a_trajectory_leaves_all_else_as_it_is(tmp_path, name):
     text, *system = EVERY[name]
@@ -69,6 +71,7 @@ def test_a_trajectory_leaves_all_else_as_it_is(tmp_path, name):
     assert_same_bits({key: found[key] for key in alone}, alone)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("name", [*SMALL, *slow_cases(*[name for name in EVERY if name not in SMALL])])
 def test_block_size_does_not_matter(tmp_path, name):
     scene, whole = scene_of(*EVERY[name]), run(tmp_path, *EVERY[name])
@@ -87,7 +90,7 @@ def test_block_size_does_not_matter(tmp_path, name):
     assert (numbers[0], numbers[-1]) == ((2, 2) if "follow" in name else (math.prod(scene.sweep_shape), 1))
 
 
-@pytest.mark.parametrize("name", ["random", *slow_cases("compliant, force")])
+@pytest.mark.parametrize("name", slow_cases("random", "compliant, force"))
 def test_executors_do_not_matter(tmp_path, name):
     own = run(tmp_path, *EVERY[name])
     with ThreadPoolExecutor(2) as pool:
@@ -120,6 +123,7 @@ def long_scene(tmp_path_factory):
     return path, run(folder, text)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("how", [signal.SIGINT, *slow_cases(signal.SIGKILL)])
 def test_interrupted_and_resumed(tmp_path, long_scene, how):
     scene, whole = long_scene

@@ -136,6 +136,7 @@ def test_the_reference_sees_what_was_built():
     assert free > 50
 
 
+@pytest.mark.slow
 def test_flights():
     rng = default_rng(11)
     rows = sum(judge_flights(1200, rng) for _ in range(2))

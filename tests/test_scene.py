@@ -236,12 +236,14 @@ class TestSchema:
         jsonschema.Draft7Validator.check_schema(schema)
         assert not {'"$defs"', '"prefixItems"'} & set(json.dumps(schema).replace(":", " ").split())
 
+    @pytest.mark.few(3)
     @pytest.mark.parametrize("path", sorted(CONFIGS.glob("*.yaml")), ids=lambda path: path.stem)
     def test_configs_are_valid(self, path):
         assert path.read_text().startswith("# yaml-language-server: $schema=./scene.schema.json\n")
         assert load_scene(path).name == path.stem
         jsonschema.Draft7Validator(json_schema()).validate(read_yaml(path.read_text()))
 
+    @pytest.mark.few(5)
     @pytest.mark.parametrize("key", BY_NAME)
     def test_bounds_are_those_of_the_system(self, key):
         validator = jsonschema.Draft7Validator(json_schema()["definitions"]["SystemForm"])

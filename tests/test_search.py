@@ -232,6 +232,7 @@ def hold(reports):
     assert not [(r["n"], kind, e) for r in accepted for kind, e in r["errors"].items() if not e[0] <= LARGEST]
 
 
+@pytest.mark.slow
 def test_a_few_orbits():
     """The first, and some that once failed: M1 beyond a stop, M2 moved, while chatter is summed up."""
     reports = [check(n) for n in (*range(2), 1783, 4019, 4025)]

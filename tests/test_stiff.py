@@ -59,6 +59,7 @@ def test_a_coarse_grid_makes_no_difference(grid, changes, cells):
     np.testing.assert_allclose(spectra[1], spectra[0], rtol=0, atol=1e-11)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     "changes",
     [dict(mu_m=1e-3, zeta=0.3), dict(mu_m=1e-4), dict(mu_k=1e6), dict(omega=1e-4)],

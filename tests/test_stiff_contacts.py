@@ -133,6 +133,7 @@ def on_the_other_stop(hits, i):
     return found
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     "wrong",
     [

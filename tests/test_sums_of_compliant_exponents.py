@@ -11,6 +11,7 @@ from support.soft_stops import ELASTIC, PAPER, one_mass
 import vibro_sweep as vs
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     "stop", [dict(k_stop=29), dict(k_stop=29, c_stop=1.0), dict(k_stop=1e4, c_stop=14, preload=0.2), dict(k_stop=1e8)]
 )

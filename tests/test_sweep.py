@@ -93,6 +93,7 @@ def test_follow_starts_where_the_last_point_ended(tmp_path):
             X = section[-1]
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("direction", ["up", "down", "both"])
 def test_up_is_up_on_a_falling_axis(tmp_path, direction):
     rising = SCENES["follow"].replace("both", direction)

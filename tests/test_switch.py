@@ -101,6 +101,7 @@ def test_restart_from_the_end_of_what_is_allowed():
     assert [special.parameters for special in again.special] == [{"f2": 0.0}, {"f2": 0.5}]
 
 
+@pytest.mark.slow
 def test_an_orbit_that_loses_an_impact_may_be_symmetric():
     """LLLLRRR without the impact that vanishes is LLLRRR, to rounding: its half map has a pitchfork, its map none."""
     system = PAPER.replace(b=0.5)

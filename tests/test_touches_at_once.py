@@ -58,6 +58,7 @@ def itineraries(omega, zeta, right, left):
     return both
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("omega, zeta, right, left", CASES)
 def test_contacts_that_end_by_force(omega, zeta, right, left):
     amplitude = 1 / np.hypot(1 - omega**2, 2 * zeta * omega)
@@ -86,6 +87,7 @@ def test_contacts_that_end_by_force(omega, zeta, right, left):
             assert np.sort(np.abs(ends[0].multipliers)) == pytest.approx(np.sort(np.abs(values)), rel=1e-9)
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize(
     "stops, right, left",
     [

@@ -14,6 +14,7 @@ from vibro_sweep.driver import blocks, compute
 from vibro_sweep.driver.provenance import provenance
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("part", [False, True])
 def test_what_is_opened_can_be_copied_and_sent(path, part):
     scene = scene_of(PLANE + ALL)

@@ -19,7 +19,7 @@ def pitchforks():
     return [orbit_in(orbit, k) for k in (0, *EXPONENTS)]
 
 
-@pytest.mark.parametrize("k", [-40, *slow_cases(40)])
+@pytest.mark.parametrize("k", slow_cases(-40, 40))
 def test_what_begins_at_points_of_codimension_two(k, pitchforks):
     report, orbits = Report(0), (pitchforks[0], pitchforks[1 + EXPONENTS.index(k)])
     pair = Pair(report, "paper", k, True)

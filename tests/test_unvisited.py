@@ -67,6 +67,7 @@ def test_a_start_that_sees_it_is_enough(tmp_path):
     assert windows.unvisited == []
 
 
+@pytest.mark.slow
 def test_the_file_and_the_table(beside_free, tmp_path, capsys):
     (unvisited,) = vs.windows(beside_free).unvisited
     run_windows(beside_free, tmp_path / "w.h5")

@@ -27,6 +27,7 @@ def longest_contact(orbit):
     return np.max(orbit.contacts["t_release"] - orbit.contacts["t_touch"])
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("system", "itinerary", "kind"),
     [
@@ -47,6 +48,7 @@ def test_where_preload_and_contact_vanish_the_free_motion_touches_the_stop(syste
         assert longest_contact(one.orbit) < 1e-13
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("c_stop", [0.0, 1.0])
 @pytest.mark.parametrize("release", ["displacement", "force"])
 def test_curves_of_grazes_do_not_know_of_the_preload(c_stop, release):

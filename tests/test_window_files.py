@@ -53,6 +53,7 @@ def test_it_holds_the_windows(few, file):  # noqa: F811
             np.testing.assert_array_equal(own[name], data[name])
 
 
+@pytest.mark.slow
 def test_a_run_that_is_interrupted_goes_on(few, file, tmp_path):  # noqa: F811
     calls = []
 

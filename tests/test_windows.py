@@ -95,6 +95,7 @@ def test_mirror_images_are_one_window(tmp_path):
     assert thirteen[0].points == np.count_nonzero(right != left)
 
 
+@pytest.mark.slow
 def test_a_plane_row_by_row(tmp_path):
     axes = {"omega": [0.62, 0.63], "b": [6.8, 7.8, 8.8]}
     vs.sweep(SYSTEM, axes, transient=300, record=20, output=tmp_path / "plane.h5", workers=1)

@@ -51,6 +51,7 @@ def test_a_flipped_bit(scene, path, whole, name, capsys):
     assert "checksums    all hold" in described(path) and os.listdir(path.parent) == [path.name]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["status", *slow_cases("impacts_right", "impacts_left", "period")])
 def test_zeros_that_become_ones(scene, path, whole, name):
     """Two bytes at a time, as a worn-out disk may give them: Fletcher-32 alone does not see it."""
@@ -80,6 +81,7 @@ def test_a_damaged_file_of_other_code_is_left_alone(scene, path, monkeypatch):
     assert path.read_bytes() == before and os.listdir(path.parent) == [path.name]
 
 
+@pytest.mark.slow
 def test_several_flipped_bits(scene, path, whole):
     vs.run(scene, path)
     for name, chunk in (("x1", 0), ("x1", 1), ("status", 0), ("b", 0)):
@@ -89,6 +91,7 @@ def test_several_flipped_bits(scene, path, whole):
     assert_same_bits(arrays_of(path), whole)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("count", [20, pytest.param(500, marks=pytest.mark.slow)])
 def test_flipped_bits_are_never_silent(scene, path, whole, count):
     """Anywhere in the file: it is refused, or a dataset is named, or what is read is what was written."""
@@ -138,6 +141,7 @@ def test_a_file_cut_off(scene, path, keep, capsys):
     vs.open(path).close()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("keep", [0.5, *slow_cases(0.0, 0.01, 0.999)])
 def test_a_part_cut_off_in_mid_run(scene, path, whole, keep):
     """The run stops, and goes on from the blocks that are left; no hole is taken for numbers."""
