@@ -9,7 +9,7 @@ the damper of a contact that its force ends gives J_i = c delta_i; other contact
 of the touches: there J_i > 0 or delta_i > 0, and elsewhere delta_i < 0.
 """
 
-from itertools import combinations
+from itertools import product
 
 import numpy as np
 
@@ -17,8 +17,6 @@ from vibro_sweep.analysis.periodic.contact_numbers import has_corner, is_smooth
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses.flights import flight_matrices, new_workspace
 from vibro_sweep.engine.impulses.flow import contact_coordinates, flow
-
-MOST = 8  # touches of which all sets are tried
 
 
 class TouchesAtOnce:
@@ -69,16 +67,14 @@ class TouchesAtOnce:
 
     def goes_on(self) -> bool:
         """Whether orbits exist on both sides."""
-        K = len(self.moved)
-        counts = range(K + 1) if K <= MOST else (0, 1, K)
-        sets = (np.isin(np.arange(K), few) for count in counts for few in combinations(range(K), count))
-        return {1, -1} <= {self.side_of(some) for some in sets}
+        sets = product((False, True), repeat=len(self.moved))
+        return {1, -1} <= {self.side_of(np.array(some)) for some in sets}
 
     def multipliers(self) -> np.ndarray:
         """(n,) of the orbits with all touches, which are contacts; by falling modulus, of a pair +im first."""
-        product = np.eye(self.flights.shape[1])
+        around = np.eye(self.flights.shape[1])
         for corner, flight in zip(self.corners, self.flights, strict=True):
-            product[len(product) // 2] -= corner * product[0]
-            product = flight @ product
-        values = self.sigma * np.linalg.eigvals(product).astype(complex)
+            around[len(around) // 2] -= corner * around[0]
+            around = flight @ around
+        values = self.sigma * np.linalg.eigvals(around).astype(complex)
         return values[np.lexsort((-values.imag, -np.abs(values)))]
