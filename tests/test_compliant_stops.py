@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from mpmath import mp
 from reference import compliant
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
@@ -271,3 +272,29 @@ def test_trajectories_and_samples_go_on_from_a_contact_or_a_relaxing_stop(releas
     assert data.trajectory_x1.values[0] == pytest.approx(orbit.sample(np.linspace(40, 42, 41) * T)[:, 0], abs=1e-10)
     fine = vs.simulate(system, (0.3, 0), 10).sample(np.linspace(0, 10, 2001) * T)
     assert np.abs(np.diff(fine[:, 0])).max() < 1.1 * np.abs(fine[:, 1]).max() * T / 200
+
+
+@pytest.mark.parametrize(("stiffness", "preload", "start"), [(1.0, 1e6, (2.5, -0.6)), (29.0, 1.0, (1e-4, -1e-4))])
+def test_a_contact_that_the_preload_ends_long_before_the_stiffness_would(stiffness, preload, start):
+    """x'' + c x' = 0 before and after it, x'' + c x' + k x = p in it, in 40 digits."""
+    omega, c, (x, v) = 0.5, mp.mpf("0.1"), map(mp.mpf, start)
+    with mp.workdps(40):
+        k, p = mp.mpf(stiffness), mp.mpf(preload)
+        touch = -mp.log(1 + c * x / v) / c
+        v *= mp.exp(-c * touch)
+        root = mp.sqrt(k - c * c / 4)
+
+        def within(u):
+            decay, cos, sin = mp.exp(-c * u / 2), mp.cos(root * u), mp.sin(root * u)
+            place = p / k + decay * (-p / k * cos + (v - c * p / (2 * k)) / root * sin)
+            return place, decay * (v * cos + (p - c * v / 2) / root * sin)
+
+        length = mp.findroot(lambda u: within(u)[0] / u, -2 * v / p)
+        left = 2 * 2 * mp.pi / omega - touch - length
+        expected = within(length)[1] * (1 - mp.exp(-c * left)) / c
+    system = vs.Oscillator.named(
+        "one_mass", k_stop=stiffness, preload=preload, omega=omega, zeta=0.05, tau=0, b=0, stops="left", k=0, F=0
+    )
+    swept = vs.sweep(system, {"b": [0.0]}, observe=["section"], start=start, transient=0, record=2)
+    assert float(swept.x1.values.ravel()[-1]) == pytest.approx(float(expected), rel=1e-13)
+    assert vs.simulate(system, start, 2).section[-1, 0] == pytest.approx(float(expected), rel=1e-13)
