@@ -106,3 +106,34 @@ def test_an_orbit_that_is_followed_goes_on_with_stops_that_relax(tau, transient)
         record=1, observe=["energy"],
     )  # fmt: skip
     assert steps.impact_power.values == pytest.approx(wanted, rel=1e-12)
+
+
+def test_energies_of_a_contact_of_millions_of_steps_are_nan():
+    """A mass that creeps in a damper: nothing else of the point is lost, and no gigabytes are asked for."""
+    system = vs.Oscillator.named(
+        "one_mass", k=0, zeta=0, F=100, omega=0.1, k_stop=1000, c_stop=1e6, preload=0.3, b=0, stops="right", tau=0
+    )
+    data = vs.sweep(
+        system, {"F": [100.0]}, start=(-0.978, -0.606), transient=1, record=4, observe=["section", "energy"]
+    )
+    assert data.status.values.tolist() == [0] and np.isfinite(data.x1.values).all()
+    assert np.isnan(data.impact_power.values).all() and np.isnan(data.peak_x1.values).all()
+
+
+@pytest.mark.filterwarnings("error")
+def test_energies_of_a_point_that_fails_are_nan():
+    system = vs.Oscillator.named(
+        "one_mass",
+        k=0,
+        zeta=0.05,
+        F=100,
+        omega=1e-3,
+        k_stop=1e9,
+        c_stop=1e3,
+        preload=1e3,
+        b=0.1,
+        stops="right",
+        tau=1.3,
+    )
+    data = vs.sweep(system, {"b": [0.1]}, start=(-1.5, 0.44), transient=1, record=4, observe=["section", "energy"])
+    assert data.status.values.item() != 0 and np.isnan(data.rms_x1.values).all()

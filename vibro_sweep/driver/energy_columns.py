@@ -13,6 +13,7 @@ from vibro_sweep.model.stacks import dot, solved
 from vibro_sweep.model.state import state
 
 ROOM = 64  # impacts of a period there is room for at first
+MOST_ROOM = 8**4 * ROOM  # which takes 0.4 GB
 
 
 def energies_of(
@@ -42,9 +43,9 @@ def energies_of(
         begins, resting = starts_after(passed[0]), passed["resting"][0].copy()  # as laid out as the other
     begins, relaxed = at_contact(systems, begins[:, :states], resting), begins[:, states:].copy()
     wanted = {
-        "loss": np.empty(len(systems)),
-        "squares": np.empty((len(systems), states)),
-        "peaks": np.empty((len(systems), states)),
+        "loss": np.zeros(len(systems)),
+        "squares": np.zeros((len(systems), states)),
+        "peaks": np.zeros((len(systems), states)),
     }
     back = systems["back"] if "back" in systems.dtype.names else np.tile(np.eye(kind.masses), (len(systems), 1, 1))
     # contiguous, whether they are the fields of one record, of several, or in reverse: for each the kernel would be
@@ -58,7 +59,7 @@ def energies_of(
             new_workspace(parts, room, kind.masses), wanted["loss"], wanted["squares"], wanted["peaks"], outcome,
         )  # fmt: skip
         room *= 8
-        if workspace.ensemble.halt[0] != 0 or not (outcome == status.NOT_COMPUTED).any():
+        if room > MOST_ROOM or workspace.ensemble.halt[0] != 0 or not (outcome == status.NOT_COMPUTED).any():
             break
     known = np.where(status.is_valid(outcome), 1.0, np.nan)
     time = block.plan.record * 2 * np.pi / systems["omega"]
