@@ -128,3 +128,16 @@ def test_an_impact_that_is_forgotten_begins_on_the_other_side_and_from_all_start
         assert beyond.itinerary == "LLLRRRRR" and beyond.system.zeta > graze.parameters["zeta"]
         flown = vs.simulate(beyond.system, beyond.state, 1)
         assert np.abs(flown.section[-1] - beyond.state).max() < 1e-12 and len(flown.impacts) == 5
+
+
+def test_a_window_that_begins_at_a_graze_of_both_stops_has_its_orbit_there():
+    """Steps fail so near to it that the last point, corrected, differs in its last digits from what was recorded."""
+    system = vs.Oscillator.named(
+        "one_mass", k=1, F=0.7431435673133039, omega=1, zeta=0.08296261710310168, tau=0, b=0.8319339808708435,
+        k_stop=12.343990807677045, c_stop=4.070820177882852, k_stop_left=37.031972423031135, c_stop_left=0,
+    )  # fmt: skip
+    swept = vs.sweep(system, {"omega": np.linspace(0.5, 2, 31)}, observe=["section"], transient=400, record=60)
+    begins = vs.windows(swept)[0].lower
+    assert begins.type == "graze" and begins.orbit.status == "ok" and np.isfinite(begins.orbit.state).all()
+    free = vs.periodic_orbit(system.replace(omega=begins.parameters["omega"]), itinerary="")
+    assert begins.orbit.sample([0.0, 1.0]) == pytest.approx(free.sample([0.0, 1.0]), abs=1e-9)

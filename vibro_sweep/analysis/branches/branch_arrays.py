@@ -103,12 +103,12 @@ def common(of, start: Solution, names: tuple[str, ...], p: np.ndarray, codes: Ma
     points are. p : (n,) or (n, 2); codes : of their types"""
     places = np.array([[one.parameters[name] for name in names] for one in of.special])
     points, least, values = [], 0, p.reshape(len(p), -1)
-    for (
-        place
-    ) in places:  # special points are among the points, in the same order; a sticking onset is not an orbit of it
-        there = np.flatnonzero(np.all(values == place, axis=1))  # `closed` is the first point
-        least = next((int(point) for point in there if point >= least), least)
-        points.append(least if least in there else int(there[0]) if len(there) else -1)
+    for one, place in zip(of.special, places, strict=True):  # they are among the points, in the same order
+        there = np.flatnonzero(np.all(values == place, axis=1)).tolist()  # `closed` is the first point
+        least = next((point for point in there if point >= least), least)
+        # where steps fail the last point is recorded as it was before it was corrected; an onset of sticking is none
+        last = -1 if one.orbit._solution is None else 0 if one is of.begins else len(values) - 1
+        points.append(least if least in there else there[0] if there else last)
     return {
         "branch_period": np.int32(start.whole().half_periods // 2),
         "branch_symmetric": np.int8(start.sigma == -1),
