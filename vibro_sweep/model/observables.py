@@ -154,8 +154,9 @@ _OF_ANY = (
     ),
     Variable(
         "restitution_mean", _CONTACTS, "mean restitution",
-        "mean of -v_release/v_touch over the contacts that ended in the recorded periods; NaN without any; "
-        "above 1 where slow contacts are thrown back",
+        "mean of -v_release/v_touch over the contacts that ended in the recorded periods, without those that the stop "
+        "began (v_touch < 0: it comes to the mass while it relaxes); NaN without any; above 1 where slow contacts are "
+        "thrown back",
     ),
     Variable("sticking_time", _IMPACTS, "sticking time", "time at rest on a stop in the recorded periods", units="s"),
 )  # fmt: skip
@@ -176,7 +177,7 @@ def _energies(masses: int) -> tuple[Variable, ...]:
         Variable(
             "impact_power", _ENERGY, "power that stops take",
             "energy lost in impacts, and the work of the masses on compliant stops, in the recorded periods, per unit "
-            "time", units="W", in_kernel=False,
+            "time; NaN where contacts take more than a million steps in a period", units="W", in_kernel=False,
         ),
         *(
             Variable(

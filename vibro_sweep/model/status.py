@@ -32,7 +32,8 @@ STATUSES = {
         "too_many_impacts_in_a_period",
         "more impacts in a forcing period than are computed",
         "There are more than 100 000, as with R near 1 and a tiny clearance. Check the unit of "
-        "the clearance; a smaller R, or a larger clearance, has fewer impacts.",
+        "the clearance; a smaller R, or a larger clearance, has fewer impacts. A mass that drops on a preloaded stop "
+        "bounces ever lower and comes to rest only in the limit: start it at rest on the stop.",
     ),
     NOT_FINITE: Status(
         "not_finite",
