@@ -21,10 +21,16 @@ from numba.core.cpu import CPUTargetOptions
 
 TESTED = ("0.62", "0.63", "0.64", "0.65", "0.66", "0.67", "0.68")  # versions of numba with which compiler.py was tried
 IS_TESTED = ".".join(map(str, numba.version_info.short)) in TESTED
-NoInlineCompiler = PartCompiler = SmallCompiler = WholeCompiler = None
+NoInlineCompiler = PartCompiler = QuickCompiler = SmallCompiler = WholeCompiler = None
 if IS_TESTED:
     with contextlib.suppress(Exception):  # internals that are missing: kernels compile plainly
-        from vibro_sweep.engine.simd.compiler import NoInlineCompiler, PartCompiler, SmallCompiler, WholeCompiler
+        from vibro_sweep.engine.simd.compiler import (
+            NoInlineCompiler,
+            PartCompiler,
+            QuickCompiler,
+            SmallCompiler,
+            WholeCompiler,
+        )
 
 
 @property
@@ -189,8 +195,12 @@ class exported:  # noqa: N801  # a decorator
 
     def __init__(self, function):
         functools.update_wrapper(self, function)
-        self._part, self._whole = jit(function), _compiled(function, WholeCompiler)
+        self._part, self._whole = jit(function), _compiled(function, self._compiler())
         _enable_caching(self._whole)
+
+    @staticmethod
+    def _compiler():
+        return WholeCompiler
 
     def __call__(self, *args):
         return self._whole(*args)
@@ -203,6 +213,14 @@ class exported:  # noqa: N801  # a decorator
     @property
     def _numba_type_(self):  # what other kernels see of it
         return self._part._numba_type_
+
+
+class exported_quickly(exported):  # noqa: N801
+    """`exported` for a kernel with hundreds of parts, of which LLVM's first level makes code that is as fast."""
+
+    @staticmethod
+    def _compiler():
+        return QuickCompiler
 
 
 def _compiled(function, compiler, forceinline=False, **options):
@@ -260,6 +278,6 @@ def _enable_caching(dispatcher):
 
 
 if not _usable():
-    NoInlineCompiler = PartCompiler = SmallCompiler = WholeCompiler = None
+    NoInlineCompiler = PartCompiler = QuickCompiler = SmallCompiler = WholeCompiler = None
 
 AS_ONE = WholeCompiler is not None  # else other multiply-adds are fused, and last digits differ
