@@ -170,6 +170,9 @@ _STATUS = Variable(
 )  # fmt: skip
 
 
+_TOO_LONG = "NaN where contacts take more than a million steps in a period"
+
+
 def _energies(masses: int) -> tuple[Variable, ...]:
     """The variables that the designer of a damper looks at."""
     sizes = (("rms", "rms of", "root mean square of the {}"), ("peak", "peak of", "largest size of the {}"))
@@ -177,12 +180,12 @@ def _energies(masses: int) -> tuple[Variable, ...]:
         Variable(
             "impact_power", _ENERGY, "power that stops take",
             "energy lost in impacts, and the work of the masses on compliant stops, in the recorded periods, per unit "
-            "time; NaN where contacts take more than a million steps in a period", units="W", in_kernel=False,
+            f"time; {_TOO_LONG}", units="W", in_kernel=False,
         ),
         *(
             Variable(
-                f"{name}_{of}", _ENERGY, f"{label} {of}", f"{text.format(what)} in the recorded periods",
-                units=units, in_kernel=False,
+                f"{name}_{of}", _ENERGY, f"{label} {of}",
+                f"{text.format(what)} in the recorded periods; {_TOO_LONG}", units=units, in_kernel=False,
             )
             for name, label, text in sizes
             for of, _, _, what, units in coordinates(masses)

@@ -75,7 +75,8 @@ def seek(series, count, wave, u, rate, farthest, wanted):
         after = u + newton * (1.0 - newton * (curve - newton * (2.0 * curve * curve - bend)))
         wanted = wanted & (slope < 0.0) & (after > 0.0) & (after <= farthest)
         u = select(wanted, after, u)
-        bends = select(abs(curve) > rate, abs(curve), rate)  # where a preload ends a contact far sooner than its rate
+        # what a step bends the course by, relatively: where a preload ends a contact far sooner than its rate
+        bends = select(abs(curve) > rate, abs(curve), rate)
         left = newton * bends
         left = left * left
         now = wanted & (left * left <= CLOSE * (u * bends))

@@ -165,9 +165,16 @@ def forced(b):
 @jit
 def take_releases(f, c, place, b):
     """The tests `relaxed` and `forced`, of releases by force."""
-    place.tests[TEST.relaxed], place.tests[TEST.forced] = np.inf, forced(b)
-    if c.compliant is not None:
-        place.tests[TEST.relaxed] = time_to_spare(f, c, place, b)
+    place.tests[TEST.relaxed], place.tests[TEST.forced] = least_to_spare(f, c.compliant, c, place, b), forced(b)
+
+
+@jit
+def least_to_spare(f, compliant, c, place, b):
+    """`time_to_spare`, of which nothing is compiled where no event lasts."""
+    if compliant is None:
+        return np.inf
+    else:
+        return time_to_spare(f, c, place, b)
 
 
 @jit

@@ -18,7 +18,7 @@ from vibro_sweep.engine.continuation.lasting import put_force, rate_of
 from vibro_sweep.engine.continuation.moving_flow import OMEGA
 from vibro_sweep.engine.impulses.taylor_orders import ORDER
 from vibro_sweep.engine.simd.jit import jit
-from vibro_sweep.engine.simd.lanes import LANES, bits
+from vibro_sweep.engine.simd.lanes import LANES, alike, bits
 from vibro_sweep.engine.simd.memory import eight, put_eight
 
 MOST_HALVINGS = 17  # of the length of an event: a longer one, of a stop with a strong damper, is not computed
@@ -101,7 +101,7 @@ def differ(tables, kept):
     found = 0
     for place in range(0, tables.shape[0] * tables.shape[1] * tables.shape[2], LANES):
         value = eight(tables, place)
-        found |= bits(abs(value - eight(kept, place)) > 0.0)
+        found |= bits(~(abs(value - eight(kept, place)) <= 0.0))  # NaN differs from all
         put_eight(kept, place, value)
     return found != 0
 
@@ -111,14 +111,14 @@ def is_not_zero(table):
     """Whether a number of a table is not zero: along b and along numbers of the stop alone B does not change."""
     found = 0
     for place in range(0, table.shape[0] * table.shape[1], LANES):
-        found |= bits(abs(eight(table, place)) > 0.0)
+        found |= bits(~(abs(eight(table, place)) <= 0.0))
     return found != 0
 
 
 @jit
 def clear(table):
     for place in range(0, table.shape[0] * table.shape[1], LANES):
-        put_eight(table, place, eight(table, place) * 0.0)
+        put_eight(table, place, alike(0.0))  # times 0, NaN would stay
 
 
 @jit
