@@ -106,9 +106,7 @@ def common(of, start: Solution, names: tuple[str, ...], p: np.ndarray, codes: Ma
     for one, place in zip(of.special, places, strict=True):  # they are among the points, in the same order
         there = np.flatnonzero(np.all(values == place, axis=1)).tolist()  # `closed` is the first point
         least = next((point for point in there if point >= least), least)
-        # where steps fail the last point is recorded as it was before it was corrected; an onset of sticking is none
-        last = -1 if one.orbit._solution is None else 0 if one is of.begins else len(values) - 1
-        points.append(least if least in there else there[0] if there else last)
+        points.append(least if least in there else there[0] if there else -1)  # an onset of sticking is none of them
     return {
         "branch_period": np.int32(start.whole().half_periods // 2),
         "branch_symmetric": np.int8(start.sigma == -1),

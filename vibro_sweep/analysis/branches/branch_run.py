@@ -97,7 +97,12 @@ class BranchRun:
         self.special.append(self._fail_at(a) if a else self._fail_behind_last())
 
     def _fail_at(self, a: Point) -> SpecialPoint:
-        """`failed` at this point, or the graze at which it lies to rounding: all contacts may vanish there at once."""
+        """`failed` at this point, or the graze at which it lies to rounding: all contacts may vanish there at once.
+
+        It is the last one that was recorded, corrected: that is recorded in its place.
+        """
+        self.rows = self._without_last()
+        self._add(a)
         if abs(a.stop_distance) <= TOUCHING * a.solution.size_of_gap or np.any(shallow(a.solution)):
             self._forget_beside(a.value, 0.0)
             return self._end(Event("graze", lambda point: point.stop_distance, touches=True), a, 0.0)
@@ -206,7 +211,7 @@ class BranchRun:
             end = first_end(self.curve, ends_between(self.curve, self.bounds, a, b), a, b) or end
         if ends and end is None:  # what follows is not a motion
             if not (self._join_contacts() or self._press_for_good(self._last_solution())):
-                self.special.append(self._at("failed", a, math.nan))
+                self.special.append(self._fail_at(a))
             return True
         last = end.place if end else b
         birth = own_birth(self.curve, a, last)
