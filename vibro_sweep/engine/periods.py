@@ -6,6 +6,8 @@ it fades away like a geometric sequence, d is a period, however small the distan
 and where the distance after the found period itself does not fade, the points only seem to repeat themselves.
 """
 
+import math
+
 import numpy as np
 
 from vibro_sweep.engine.simd.jit import inline, jit
@@ -14,6 +16,7 @@ from vibro_sweep.model import exponents
 REPEAT = 1e-6  # section points this near to each other, relative to their size, are the same point
 ROUNDING = 1e-10  # relative distance that rounding may leave of it, where motion forgets it
 FADED = 0.7  # part of the last distance that may be left in the end
+AS_NEAR = 2.0  # distance after d, in those after a multiple of d, at which both are as near
 LEAST_WINDOW = 12  # points over which distances are averaged
 WINDOWS = 5
 NEAR = 1e-2  # relative distance below which an orbit approaches a periodic one as a linear map would
@@ -77,20 +80,51 @@ def repeats(section, size, p, o):
 
 
 @jit
-def fades(section, size, d, p, rounding):
-    """Whether the distance after d points fades away; points nearly repeat themselves after p, a multiple of d."""
-    window = min(window_of(p), len(section) - d)
-    after = window_distance(section, size, d, window, 2, 3, np.inf)
-    if after <= rounding:
-        return True
-    if len(section) - d - window < window // 4:  # too few points to tell
-        return d == p
-    before = window_distance(section, size, d, window, 0, 3, np.inf)
-    between = window_distance(section, size, d, window, 1, 3, np.inf)
+def root_mean_square(section, size, p, first, window):
+    """Of the differences of all numbers of so many points from those p before them. On a spiral that turns by a quarter
+    from point to point it does not beat, as their largest does."""
+    total = 0.0
+    for n in range(first, first + window):
+        for i in range(section.shape[1]):
+            apart = (section[n, i] - section[n - p, i]) / size[i]
+            total += apart * apart
+    return math.sqrt(total / (window * section.shape[1]))
+
+
+@jit
+def fades_from(section, size, d, begin, window, after, strict):
+    """Whether the distance after d points fades away from point `begin` on, as three windows tell.
+
+    after: in the last of them. strict: like a geometric sequence; else also where it falls faster and faster.
+    """
+    before = root_mean_square(section, size, d, begin, window)
+    between = root_mean_square(section, size, d, (begin + len(section) - window) // 2, window)
     if not before > between > after:
         return False
     limit = after - (after - between) ** 2 / ((after - between) - (between - before))
-    return abs(limit) < FADED * after
+    return abs(limit) < FADED * after or (not strict and (limit < 0.0 or limit > after))
+
+
+@jit
+def fades(section, size, d, p, rounding):
+    """Whether the distance after d points fades away; points nearly repeat themselves after p, a multiple of d.
+
+    In all of the record, or in its second half: what fades fast at first may hide there what fades slowly. Where points
+    are hardly nearer to each other after p than after d, nothing speaks for p.
+    """
+    window = min(window_of(p), len(section) - d)
+    after = root_mean_square(section, size, d, len(section) - window, window)
+    if after <= rounding:
+        return True
+    last = min(window, len(section) - p)
+    if d < p and after <= AS_NEAR * root_mean_square(section, size, p, len(section) - last, last):
+        return True
+    if len(section) - d - window < window // 4:  # too few points to tell
+        return d == p
+    half, strict = max(d, len(section) // 2), d == p or after > REPEAT
+    if fades_from(section, size, d, d, window, after, strict):
+        return True
+    return len(section) - half >= 2 * window and fades_from(section, size, d, half, window, after, strict)
 
 
 @jit

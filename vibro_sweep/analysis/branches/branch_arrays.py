@@ -103,7 +103,7 @@ def common(of, start: Solution, names: tuple[str, ...], p: np.ndarray, codes: Ma
     points are. p : (n,) or (n, 2); codes : of their types"""
     places = np.array([[one.parameters[name] for name in names] for one in of.special])
     points, least, values = [], 0, p.reshape(len(p), -1)
-    for one, place in zip(of.special, places, strict=True):  # they are among the points, in the same order
+    for place in places:  # they are among the points, in the same order
         there = np.flatnonzero(np.all(values == place, axis=1)).tolist()  # `closed` is the first point
         least = next((point for point in there if point >= least), least)
         points.append(least if least in there else there[0] if there else -1)  # an onset of sticking is none of them
