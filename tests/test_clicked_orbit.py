@@ -1,8 +1,12 @@
 """The orbit at a click, without a page."""
 
+import json
+
 import numpy as np
+import pytest
 
 from vibro_sweep.live.clicked_orbit import orbit_message, settled
+from vibro_sweep.live.model_words import model_words
 from vibro_sweep.live.views import view_of
 from vibro_sweep.scene.scene import scene_of
 
@@ -51,3 +55,17 @@ def test_a_contact_over_the_section_counts_once():
         assert found.period == 1 and words["contacts"] == 2
         drawn.add(len(arrays["contact_touch"]))
     assert drawn == {2, 3}
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("k_stop", 1e308), ("c_stop", 1e308), ("F", 1e308), ("offset", -1e308), ("omega", 1e308), ("omega", 1e-308)],
+)
+@pytest.mark.filterwarnings("error")
+def test_numbers_near_the_ends_of_the_floats_are_shown(name, value):
+    """Ranges of sliders, and the period, would be infinite there, for which JSON has no word."""
+    scene = scene_of(SCENE | {"system": SCENE["system"] | {name: value}, "orbit": {"transient": 1, "record": 1}}, "")
+    view = view_of(scene)
+    [shown] = (one for one in model_words(scene, view)["numbers"] if one["name"] == name)
+    assert shown["low"] <= value <= shown["high"]
+    json.dumps([shown, orbit_message(settled(view, 0.1, 0, None))[1]], allow_nan=False)

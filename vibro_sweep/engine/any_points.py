@@ -104,6 +104,7 @@ def grazing_points(q: Linear, expand_at: float | None) -> np.ndarray:
     return result
 
 
+@np.errstate(all="ignore")  # numbers beyond the range of the floats give infinite rates, which are a status
 def _points(q: Linear, kind: Kind, frames: bool) -> np.ndarray:
     """All but the stops."""
     points = np.zeros(q.omega.shape, point_of(kind))

@@ -69,7 +69,7 @@ def orbit_message(found: Settled) -> tuple[dict[str, np.ndarray], dict[str, Any]
     """Arrays and words on an orbit: samples of its motion, impacts, section points, exponents."""
     system, q = found.system, found.system.linear
     words: dict[str, Any] = {"status": STATUSES[found.status].text, "period": found.period, "alone": found.alone}
-    words |= {"T": system.period, "low": _finite(q.low), "high": _finite(q.high), "masses": system.masses}
+    words |= {"T": _finite(system.period), "low": _finite(q.low), "high": _finite(q.high), "masses": system.masses}
     words |= {"normal": q.normal.tolist(), "mapping": found.mapping}
     words["pressed"] = [bool(one) for one in q.is_compliant((-1, 1))]
     arrays = {"exponents": found.exponents, "errors": found.errors, "section": found.section.astype("f4").ravel()}

@@ -8,6 +8,8 @@ import logging
 import threading
 from collections.abc import Callable, Iterator
 
+import numpy as np
+
 from vibro_sweep.live.answers import Answers, Message
 from vibro_sweep.live.messages import text_message
 from vibro_sweep.live.requests import Request, Save, Sweep, WindowEnds
@@ -136,7 +138,8 @@ class EngineThreads:
         """Send an answer, or why there is none. Returns whether there was one."""
         made = True
         try:
-            message = make()
+            with np.errstate(over="ignore"):  # of what is sent in single precision
+                message = make()
         except (ValueError, VibroSweepError) as error:
             message, made = text_message("error", request.seq, of=request.type, text=_words(error)), False
         except Exception as error:

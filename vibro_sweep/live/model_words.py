@@ -1,5 +1,6 @@
 """What the page shows of an oscillator: its numbers with ranges for their sliders, and what can be looked at."""
 
+import sys
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,7 @@ from vibro_sweep.plotting.style import CHAOS, EXPONENTS, LONGER, LONGEST, NO_PER
 from vibro_sweep.scene import Scene
 
 DECADE = 10.0
+LARGEST = sys.float_info.max
 _GREEK = {
     r"\mu": "μ", r"\zeta": "ζ", r"\omega": "ω", r"\tau": "τ", r"\epsilon": "ε", r"\bar f": "f̄", r"\tilde f": "f̃",
 }  # fmt: skip
@@ -74,6 +76,7 @@ def _slider(one: Parameter, value: float, view: View, stops: str) -> dict[str, A
     if one.name == view.axis:
         low, high, logarithmic = view.low, view.high, False
     words = {"name": one.name, "symbol": _plain(one.symbol), "label": one.label, "text": one.text, "value": value}
+    low, high = max(low, -LARGEST), min(high, LARGEST)
     leader = one.follows if view.system.get(one.name) is None else ""
     words |= {"leader": leader, "follows": bool(leader) and one.name not in view.numbers}
     return words | {"low": low, "high": high, "log": logarithmic, "allowed": (allowed or NUMBER).text}

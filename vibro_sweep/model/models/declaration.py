@@ -3,6 +3,8 @@
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from vibro_sweep.model.contact_laws import LAWS
 from vibro_sweep.model.linear import Linear
 from vibro_sweep.model.parameter import LENGTHS
@@ -76,7 +78,8 @@ def linear_of(model: Model, given: Mapping[str, Any]) -> Linear:
         if one.each and whole.get(one.name) is not None:
             names = names_of(one, masses)
             whole[one.name] = [whole.pop(name, value) for name, value in zip(names, whole[one.name], strict=True)]
-    return model.build(**whole)
+    with np.errstate(all="ignore"):  # matrices beyond the range of the floats: such an oscillator is too stiff
+        return model.build(**whole)
 
 
 UNITS = Option(

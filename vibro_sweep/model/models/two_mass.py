@@ -8,6 +8,7 @@ from vibro_sweep.model.parameters import PARAMETERS
 from vibro_sweep.model.stacks import matrix, vector
 
 
+@np.errstate(all="ignore")  # matrices beyond the range of the floats: such an oscillator is too stiff
 def two_mass(*, mu_m, mu_k, zeta, f2, omega, tau, mu_c=None, **stops) -> Linear:
     """The oscillator; numbers may be complex."""
     return Linear(
