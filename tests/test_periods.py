@@ -44,6 +44,7 @@ def test_no_multiple_of_the_least_period_is_found(period):
     assert np.sum(found > 0) > 1000 and np.mean(found[found > 0] == period) > 0.975
 
 
+@pytest.mark.slow  # a kernel of its own is compiled
 def test_a_spiral_by_a_quarter_has_no_longer_period():
     """Multiplier 0.054 + 0.976 i: after four points it is nearly where it was, and four times as far after one."""
     system = vs.Oscillator(
