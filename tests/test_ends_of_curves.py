@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from support.golden import curves, files
+from golden import curves, records
 from support.oscillators import PAPER
 from support.random_branches import attractors, random_oscillator
 
@@ -150,7 +150,7 @@ def test_polynomials_stop_before_a_frequency_of_zero():
 @pytest.mark.slow
 def test_an_impact_that_vanishes_on_a_virtual_stretch_is_left_out(monkeypatch):
     """With steps of twice the length another one vanishes in the same step, behind which the orbit is real."""
-    record = files.read("curves")["paper, one side, neimark_sacker 1, resonance_1_4 3, fold 2"]
+    record = records.read("curves")["paper, one side, neimark_sacker 1, resonance_1_4 3, fold 2"]
     special = curves.start_of_curve(record)
     monkeypatch.setattr(solution_curve, "LONGEST_STEP", 2 * solution_curve.LONGEST_STEP)
     monkeypatch.setattr(solution_curve, "STRAIGHT", 2 * solution_curve.STRAIGHT)

@@ -4,8 +4,8 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from golden import curves, records
 from support import slow_cases
-from support.golden import curves, files
 
 from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve
 from vibro_sweep.analysis.curves.bifurcation_curve import first_of
@@ -37,7 +37,7 @@ ROUNDED = 1e-12  # Newton's change where what is left of it is rounding
 @pytest.fixture(params=NAMES, scope="module")
 def curve(request):
     """A curve of the golden record and its first point."""
-    record = files.read("curves")[request.param]
+    record = records.read("curves")[request.param]
     names = tuple(record["names"])
     solution_curve, place = first_of(
         SolutionCurve(start_at(curves.start_of_curve(record), names), names, record["box"])

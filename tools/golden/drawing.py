@@ -1,10 +1,10 @@
 """Cases drawn at random: oscillators of all models, orbits that attract or not. Needed to make the record only."""
 
 import numpy as np
+from golden.motions import start_of, system_record
+from support.drawn_branches import MODELS, Case, beyond, drawn_case
 
 import vibro_sweep as vs
-from support.drawn_branches import MODELS, Case, beyond, drawn_case
-from support.golden.motions import start_of, system_record
 
 DEEP = 3  # branches from branch to branch
 SEED = 30

@@ -2,15 +2,18 @@
 
 from collections import Counter
 
+from golden import records
+from golden.motions import system_of
+
 import vibro_sweep as vs
-from support.golden import files
-from support.golden.motions import system_of
+
+KINDS = ("branches", "curves", "searches", "windows")  # of which the table tells
 
 
 def table() -> str:
-    made = [kind for kind in files.KINDS if (files.FOLDER / f"{kind}.jsonl.gz").exists()]
-    head = f"The golden record, made by version {vs.__version__}: PYTHONPATH=tests python -m support.golden\n\n"
-    return head + "\n".join(_of_kind(kind, list(files.read(kind).values())) for kind in made)
+    made = [kind for kind in KINDS if (records.FOLDER / f"{kind}.jsonl.gz").exists()]
+    head = f"The golden record, made by version {vs.__version__}: PYTHONPATH=tests python -m tools.golden\n\n"
+    return head + "\n".join(_of_kind(kind, list(records.read(kind).values())) for kind in made)
 
 
 def _of_kind(kind: str, records: list[dict]) -> str:

@@ -5,8 +5,9 @@ import copy
 import numpy as np
 import pytest
 from support import slow_cases
-from support.golden import branches, checking, curves, files, searches, windows
-from support.golden.motions import system_of
+
+from golden import branches, checking, curves, records, searches, windows
+from golden.motions import system_of
 
 FEW = {  # of each kind those that the fast tests compare; the others are slow, and oscillators that need kernels
     # which no other test compiles are left to the soak tests
@@ -19,7 +20,7 @@ MOST_MASSES = 4
 
 
 def chosen(kind: str, test):
-    return {name: record for name, record in files.read(kind).items() if test(record)}
+    return {name: record for name, record in records.read(kind).items() if test(record)}
 
 
 def wrong(kind: str, records: dict) -> dict[str, list[str]]:
@@ -30,12 +31,12 @@ def wrong(kind: str, records: dict) -> dict[str, list[str]]:
 
 
 @pytest.mark.few(1)
-@pytest.mark.parametrize("kind", [kind for kind in files.KINDS if FEW[kind]])
+@pytest.mark.parametrize("kind", [kind for kind in FEW if FEW[kind]])
 def test_a_few(kind):
     assert wrong(kind, chosen(kind, lambda record: record["name"] in FEW[kind])) == {}
 
 
-@pytest.mark.parametrize("kind", files.KINDS)
+@pytest.mark.parametrize("kind", list(FEW))
 @pytest.mark.slow
 def test_oscillators_of_few_masses(kind):
     assert wrong(kind, chosen(kind, lambda record: system_of(record["system"]).masses <= MOST_MASSES)) == {}
@@ -110,7 +111,7 @@ CHANGES = (
 @pytest.fixture(scope="module")
 def one():
     """A record of a branch, and that branch."""
-    record = files.read("branches")[FEW["branches"][0]]
+    record = records.read("branches")[FEW["branches"][0]]
     return record, branches.followed(record)
 
 
@@ -128,7 +129,7 @@ def test_the_comparison_sees(one, change):
 
 @pytest.mark.slow
 def test_the_comparison_sees_what_a_curve_lost():
-    record = files.read("curves")[FEW["curves"][0]]
+    record = records.read("curves")[FEW["curves"][0]]
     made = curves.traced(record)
     for change in (without_a_point, with_a_point_moved, with_points_in_another_order):
         changed = copy.deepcopy(record["result"])
@@ -137,7 +138,7 @@ def test_the_comparison_sees_what_a_curve_lost():
 
 
 def test_the_comparison_sees_what_a_search_lost():
-    record = files.read("searches")[FEW["searches"][0]]
+    record = records.read("searches")[FEW["searches"][0]]
     found, rng = searches.searched(record), np.random.default_rng(1)
     fewer, moved = copy.deepcopy(record["result"])[:-1], copy.deepcopy(record["result"])
     moved[-1]["parent"] += 1
@@ -146,8 +147,8 @@ def test_the_comparison_sees_what_a_search_lost():
 
 @pytest.mark.slow
 def test_the_comparison_sees_a_window_that_moved():
-    record = next(iter(files.read("windows").values()))
-    found = windows.windows_in(files.FOLDER / record["file"])
+    record = next(iter(records.read("windows").values()))
+    found = windows.windows_in(records.FOLDER / record["file"])
     changed = copy.deepcopy(record["result"])
     k = next(k for k, window in enumerate(changed["windows"]) if window["ends"][0]["type"] == "graze")
     end = changed["windows"][k]["ends"][0]

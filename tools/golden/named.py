@@ -1,11 +1,11 @@
 """Cases by their names: what the paper has, and what random draws meet seldom."""
 
 import numpy as np
-
-import vibro_sweep as vs
-from support.golden.motions import start_of, system_record
+from golden.motions import start_of, system_record
 from support.models import GIVEN
 from support.random_branches import attractors, random_system
+
+import vibro_sweep as vs
 
 PAPER = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=2.0)
 ROOM = (0.3, 6.8)

@@ -4,10 +4,11 @@ import collections
 import time
 
 import numpy as np
+from golden import branches, curves, searches
+from support.drawn_branches import MODELS
 
 import vibro_sweep as vs
-from support.drawn_branches import MODELS
-from support.golden import branches, curves, drawing, named, searches
+from tools.golden import drawing, named
 
 PER_MODEL = {"branches": 24, "curves": 13, "searches": 8}  # of those drawn
 LONGEST = 4.0  # seconds of one case, of its own time: a busy machine changes nothing

@@ -7,10 +7,10 @@ last digits.
 import numpy as np
 
 import vibro_sweep as vs
-from support.golden.branches import followed
-from support.golden.motions import labels
-from support.golden.passing import in_order, passed
-from support.golden.special_points import changed, differences, ends_of, nearest, special_record
+from golden.branches import followed
+from golden.motions import labels
+from golden.passing import in_order, passed
+from golden.special_points import changed, differences, ends_of, nearest, special_record
 
 POINTS = 50
 LEAST_SPEED = 1e-6  # where all impacts graze, speeds are rounding
@@ -96,3 +96,8 @@ def _passed(names, sizes, stored: dict, curve) -> list[str]:
             if i >= 0 and sure and values != {stored[name][k]}:
                 lines.append(f"point {k}: {name} {stored[name][k]}, now {values.pop()}")
     return lines
+
+
+def differences_from(record: dict) -> list[str]:
+    """Between a record and the curve that is followed now."""
+    return compared(record, record["result"], traced(record))

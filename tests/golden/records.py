@@ -7,7 +7,6 @@ from pathlib import Path
 from support import ROOT
 
 FOLDER = ROOT / "tests" / "data" / "golden"
-KINDS = ("branches", "curves", "searches", "windows")
 RENAMED = {  # since the record was made
     '"limit"': '"boundary"',
     '"along":': '"contact_normal":',

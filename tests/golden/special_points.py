@@ -1,6 +1,6 @@
 """Special points of branches and curves as records, and what differs between two lists of them."""
 
-from support.golden.motions import labels
+from golden.motions import labels
 
 ATTRIBUTES = ("stop", "kind", "impact", "direction", "criticality", "touches", "orbit")
 NO_PLACE = ("closed", "failed")  # such ends are where the computation began, or gave up

@@ -3,7 +3,7 @@
 import numpy as np
 
 import vibro_sweep as vs
-from support.golden.motions import (
+from golden.motions import (
     Motion,
     distance,
     errors_of,
@@ -14,8 +14,8 @@ from support.golden.motions import (
     rows_of,
     system_of,
 )
-from support.golden.passing import passed_in_order
-from support.golden.special_points import changed, differences, ends_of, special_record
+from golden.passing import passed_in_order
+from golden.special_points import changed, differences, ends_of, special_record
 
 POINTS = 50  # of a branch
 SWITCHED = ("graze", "pitchfork", "flip")
@@ -166,3 +166,11 @@ def corrected(system, name: str, points: dict, stored: list[Motion]) -> list[str
                     f"point at {value!r}: multipliers changed by {changed:.1e}, errors {more:.1e} and {now:.1e}"
                 )
     return lines
+
+
+def differences_from(record: dict) -> list[str]:
+    """Between a record and the branch that is followed now, with what branches off."""
+    branch = followed(record)
+    lines = compared(record, record["result"], branch, np.random.default_rng(1))
+    now = {"switch": switched(branch)}
+    return lines if record["result"]["closed"] else lines + changed(record, now, now)

@@ -5,12 +5,12 @@ import tempfile
 from pathlib import Path
 
 import numpy as np
+from golden import records, windows
+from golden.motions import system_record
+from support.models import oscillator
 
 import vibro_sweep as vs
-from support.golden import files, windows
-from support.golden.motions import system_record
-from support.golden.named import PAPER
-from support.models import oscillator
+from tools.golden.named import PAPER
 
 START = {"random": 2, "seed": 1}
 
@@ -36,8 +36,8 @@ def all_windows(told) -> list[dict]:
                 system, {parameter: values}, start=START, transient=1000, record=60, observe=["section"], output=path,
                 workers=1,
             )  # fmt: skip
-            (files.FOLDER / file).write_bytes(gzip.compress(path.read_bytes(), 9, mtime=0))
-        found = windows.result_of(windows.windows_in(files.FOLDER / file))
+            (records.FOLDER / file).write_bytes(gzip.compress(path.read_bytes(), 9, mtime=0))
+        found = windows.result_of(windows.windows_in(records.FOLDER / file))
         record = {"name": name, "system": system_record(system), "file": file, "parameter": parameter}
         result.append(record | {"bounds": [float(values[0]), float(values[-1])], "result": found})
         told(f"{name}: {len(found['windows'])} windows")

@@ -8,7 +8,8 @@ from pathlib import Path
 import h5py
 
 import vibro_sweep as vs
-from support.golden.special_points import changed, differences, special_record
+from golden import records
+from golden.special_points import changed, differences, special_record
 
 LABELS = ("period", "itinerary", "symmetric", "points", "other_attractor", "held")
 
@@ -63,3 +64,8 @@ def _same(stored, now, allowed) -> bool:
         and stored[3:] == now[3:]
         and all(abs(a - b) <= allowed[stored[0]] for a, b in zip(stored[1:3], now[1:3], strict=True))
     )
+
+
+def differences_from(record: dict) -> list[str]:
+    """Between a record and the windows that are found now in its sweep."""
+    return compared(record, record["result"], windows_in(records.FOLDER / record["file"]))

@@ -1,9 +1,11 @@
 """Searches over special points as records: the branches that `follow_branches` reaches, and in which way."""
 
+import numpy as np
+
 import vibro_sweep as vs
-from support.golden import branches
-from support.golden.motions import orbit_from, system_of
-from support.golden.special_points import changed
+from golden import branches
+from golden.motions import orbit_from, system_of
+from golden.special_points import changed
 
 POINTS = 5  # of each branch
 
@@ -35,3 +37,8 @@ def compared(record: dict, result: list[dict], found: list, rng) -> list[str]:
         own = changed(stored, now, now) + branches.compared(record, stored, one.branch, rng)
         lines += [f"branch {k}: {line}" for line in own]
     return lines
+
+
+def differences_from(record: dict) -> list[str]:
+    """Between a record and what is reached now."""
+    return compared(record, record["result"], searched(record), np.random.default_rng(1))

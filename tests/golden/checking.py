@@ -1,0 +1,18 @@
+"""A record compared with what is computed now."""
+
+from golden import branches, curves, searches, windows
+
+COMPARED = {  # kind -> what differs between a record and what is computed now, in words; nothing: []
+    "branches": branches.differences_from,
+    "curves": curves.differences_from,
+    "searches": searches.differences_from,
+    "windows": windows.differences_from,
+}
+
+
+def compared(kind: str, record: dict) -> list[str]:
+    """In words what differs; none: []."""
+    try:
+        return COMPARED[kind](record)
+    except (ValueError, LookupError) as error:
+        return [f"{type(error).__name__}: {error}"]

@@ -1,0 +1,40 @@
+"""Makes the golden record anew, or compares all of it: see the words of the package `golden`."""
+
+import sys
+
+from golden import records
+from golden.checking import compared
+
+from tools.golden import making, sweeps
+from tools.golden.table import table
+
+MADE = {  # kind -> its records, made now; in the order in which one kind needs another
+    "branches": making.all_branches,
+    "curves": lambda report: making.all_curves(list(records.read("branches").values()), report),
+    "searches": making.all_searches,
+    "windows": sweeps.all_windows,
+}
+
+
+def report(line: str) -> None:
+    print(line, flush=True)
+
+
+def make(kinds) -> None:
+    for kind in kinds:
+        records.write(kind, MADE[kind](report))
+    (records.FOLDER / "golden.log").write_text(table())
+
+
+def check(kinds) -> None:
+    for kind in kinds:
+        for name, record in records.read(kind).items():
+            for line in compared(kind, record):
+                report(f"{kind}: {name}: {line}")
+
+
+if __name__ == "__main__":
+    if sys.argv[1:2] == ["check"]:
+        check(sys.argv[2:] or MADE)
+    else:
+        make(sys.argv[1:] or MADE)
