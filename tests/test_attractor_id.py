@@ -63,15 +63,13 @@ def test_how_much_is_read_at_once_does_not_matter(window, room):
 
 
 @pytest.mark.slow
-def test_neither_workers_nor_blocks_matter(tmp_path, window, monkeypatch):
-    monkeypatch.setattr("vibro_sweep.driver.sweep.points_per_block", lambda *_: 2)
-    again = run(tmp_path, WINDOW, workers=2)
+def test_neither_workers_nor_blocks_matter(tmp_path, window):
+    again = run(tmp_path, WINDOW, workers=2, block=2)
     for name in window:
         assert np.array_equal(window[name], again[name], equal_nan=window[name].dtype.kind == "f"), name
 
 
-def test_an_interrupted_run_has_no_numbers_and_then_the_same(tmp_path, window, monkeypatch):
-    monkeypatch.setattr("vibro_sweep.driver.sweep.points_per_block", lambda *_: 4)
+def test_an_interrupted_run_has_no_numbers_and_then_the_same(tmp_path, window):
     path = tmp_path / "out.h5"
 
     def stop(done, total):
@@ -79,7 +77,7 @@ def test_an_interrupted_run_has_no_numbers_and_then_the_same(tmp_path, window, m
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        vs.run(scene_of(WINDOW), path, workers=1, progress=stop)
+        vs.run(scene_of(WINDOW), path, workers=1, progress=stop, block=4)
     with vs.open(f"{path}.part") as part:
         assert np.all(part.attractor_id == -1) and np.any(part.attractor > 0)
     vs.run(scene_of(WINDOW), path, mode="resume")

@@ -9,7 +9,6 @@ from scipy.optimize import fsolve
 from support import compliant_curves
 from support.compliant_branches import drawn_case
 from support.drawn_branches import Case
-from support.random_curves import steps_of
 from support.same_branch import follow
 
 import vibro_sweep as vs
@@ -162,8 +161,7 @@ def test_a_curve_of_grazes_ends_where_its_touch_comes_to_the_contact_before():
     graze = next(one for one in branch.special if one.type == "graze")
     ends = []
     for factor in (0.5, 1.0, 2.0):
-        with steps_of(factor):
-            curve = vs.bifurcation_curve(graze, ("omega", "k_stop"), ((0.92, 3.3), (6.6, 240)))
+        curve = vs.bifurcation_curve(graze, ("omega", "k_stop"), ((0.92, 3.3), (6.6, 240)), step=factor)
         (end,) = points(curve, "split")
         before, touch = end.orbit.contacts
         assert touch["t_touch"] == touch["t_release"] == pytest.approx(before["t_release"], abs=1e-12)
@@ -244,8 +242,7 @@ def test_a_curve_of_folds_meets_that_of_grazes_at_one_point(seed, expected):
     )
     first = None
     for factor in (0.5, 1.0, 2.0):
-        with steps_of(factor):
-            curve = vs.bifurcation_curve(fold, NAMES, bounds)
+        curve = vs.bifurcation_curve(fold, NAMES, bounds, step=factor)
         (found,) = [one for one in points(curve, expected) if one.impact is not None]
         value = np.array(list(found.parameters.values()))
         first = value if first is None else first

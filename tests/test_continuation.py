@@ -5,12 +5,11 @@ import math
 import numpy as np
 import pytest
 from support import slow_cases
-from support.branches import branch_of, other_steps, same_points, types
+from support.branches import branch_of, same_points, types
 from support.oscillators import BALL, CAVITY, CHAIN, LONG_CHAIN, ONE_MASS, PAPER
 from support.random_branches import random_oscillator, random_system
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.branches import branch_run
 from vibro_sweep.analysis.branches.branch_start import start_of_run
 
 B_STAR = 6.7057167409730219272  # |e_1.(K - omega^2 M + i omega C)^-1 P| in 40 digits
@@ -96,33 +95,22 @@ def test_one_mass_oscillator_of_the_literature():
 
 @pytest.mark.parametrize("factor", [0.4, 2.5])
 def test_special_points_do_not_depend_on_the_step(symmetric_branch, one_sided_branch, factor):
-    with other_steps(factor):
-        again = vs.continue_orbit(vs.periodic_orbit(PAPER, itinerary="LR"), "b", (0.3, 6.8))
-        same_points(again, types(symmetric_branch), 5e-14)
-        again = vs.continue_orbit(vs.periodic_orbit(PAPER.replace(b=4.0), itinerary="R"), "b", (0.3, 6.8))
-        same_points(again, types(one_sided_branch), 5e-14)
-
-
-def undivided(orbit, name, bounds, factor, monkeypatch):
-    """Types on the branch if no step is divided in which more happens than its tests tell."""
-    monkeypatch.setattr(branch_run, "DIVISIONS", 0)
-    with other_steps(factor):
-        return [special.type for special in vs.continue_orbit(orbit, name, bounds).special]
+    again = vs.continue_orbit(vs.periodic_orbit(PAPER, itinerary="LR"), "b", (0.3, 6.8), step=factor)
+    same_points(again, types(symmetric_branch), 5e-14)
+    again = vs.continue_orbit(vs.periodic_orbit(PAPER.replace(b=4.0), itinerary="R"), "b", (0.3, 6.8), step=factor)
+    same_points(again, types(one_sided_branch), 5e-14)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("factor", [0.5, 1, 2, 7])
-def test_bifurcations_in_one_step_do_not_hide_each_other(factor, monkeypatch):
+def test_bifurcations_in_one_step_do_not_hide_each_other(factor):
     """Three masses: a flip and a Neimark-Sacker point lie within 6e-4 of R_left, two others within 7e-3."""
     system = random_oscillator(np.random.default_rng(2))
     orbit, bounds = vs.periodic_orbit(system, itinerary="LRR"), (0.56, 0.99)
-    with other_steps(factor):
-        branch = vs.continue_orbit(orbit, "R_left", bounds)
+    branch = vs.continue_orbit(orbit, "R_left", bounds, step=factor)
     expected = [0.69546726882168, 0.69605952370370, 0.81987655017267, 0.82658501099370]
     assert [s.type for s in branch.special[1:-1]] == ["flip", "neimark_sacker", "neimark_sacker", "flip"]
     assert [s.parameters["R_left"] for s in branch.special[1:-1]] == pytest.approx(expected, abs=1e-13)
-    if factor == 8:  # with these steps two of them are in one
-        assert "neimark_sacker" not in undivided(orbit, "R_left", bounds, factor, monkeypatch)[3:]
 
 
 @pytest.mark.parametrize("factor", [2, *slow_cases(1, 4)])
@@ -130,8 +118,7 @@ def test_bifurcation_in_the_step_to_a_graze(factor):
     """A Neimark-Sacker point 4e-4 beside the graze, where multipliers have a pole."""
     system = random_system(np.random.default_rng(41))
     orbit, bounds = vs.periodic_orbit(system, itinerary="L"), (0.7, 0.9)
-    with other_steps(factor):
-        branch = vs.continue_orbit(orbit, "omega", bounds)
+    branch = vs.continue_orbit(orbit, "omega", bounds, step=factor)
     expected = [("graze", 0.86249263869125), ("neimark_sacker", 0.86291307010265), ("flip", 0.86981802910054)]
     assert types(branch)[:3] == [(kind, pytest.approx(value, abs=1e-13)) for kind, value in expected]
 
@@ -161,14 +148,36 @@ def test_multipliers_of_the_points_obey_their_sum_rule(symmetric_branch):
     assert float(points.stop_distance.min()) > 0 and float(points.min_impact_speed.min()) > 0
 
 
+def test_shorter_steps_give_more_points(one_sided_branch):
+    orbit = vs.periodic_orbit(PAPER.replace(b=4.0), itinerary="R")
+    finer = vs.continue_orbit(orbit, "b", (0.3, 6.8), step=0.25)
+    assert finer.points.sizes["point"] > 2 * one_sided_branch.points.sizes["point"]
+
+
+@pytest.mark.parametrize("k", [1, 12, -2])
+def test_the_orbit_at_a_point_is_that_of_newtons_method(symmetric_branch, k):
+    """And its state, its impacts and its oscillator are those of the point."""
+    point, orbit = symmetric_branch.points.isel(point=k), symmetric_branch.orbit(k)
+    assert orbit.ok and orbit.symmetric and orbit.itinerary == "LR" and orbit.system.b == float(point.b)
+    state = [float(point[name]) for name in ("x1", "v1", "x2", "v2")]
+    assert orbit.state == pytest.approx(state, rel=1e-9)  # the point is recorded as steps have left it
+    again = vs.periodic_orbit(orbit.system, itinerary="LR")
+    assert np.sort(orbit.impacts["v1"]) == pytest.approx(np.sort(again.impacts["v1"]), rel=1e-9)
+
+
+def test_a_point_that_a_branch_has_not(symmetric_branch):
+    count = symmetric_branch.points.sizes["point"]
+    with pytest.raises(ValueError, match=f"point: {count} is not allowed; it must be a whole number >= -{count}"):
+        symmetric_branch.orbit(count)
+
+
 @pytest.mark.parametrize(("name", "bounds"), [("omega", (0.75, 0.9)), ("damping", (0.0, 0.2))])
 def test_the_unit_of_length_does_not_matter(name, bounds):
     """With force and clearance as many times as large every number of the branch is the same, but for rounding."""
 
     def branch(scale):
         system = ONE_MASS.replace(F=0.37 * scale, b=scale, omega=0.799)
-        with other_steps(1):  # compiled ones
-            return vs.continue_orbit(vs.periodic_orbit(system, itinerary="R", periods=2), name, bounds)
+        return vs.continue_orbit(vs.periodic_orbit(system, itinerary="R", periods=2), name, bounds)
 
     expected = branch(1.0)
     for scale in (2.0**-40, 2.0**40):  # of which no product is rounded

@@ -5,7 +5,6 @@ from support import slow_cases
 from support.oscillators import PAPER
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.continuation import solution_curve
 from vibro_sweep.model.linear import amplitudes
 
 
@@ -16,11 +15,9 @@ def graze():
 
 
 @pytest.mark.parametrize("factor", [1.0, 0.7848, *slow_cases((0.5,), (1.2965,), (1.7,), (2.0,), (2.3,))])
-def test_the_point_where_the_orbit_becomes_the_free_motion(graze, factor, monkeypatch):
+def test_the_point_where_the_orbit_becomes_the_free_motion(graze, factor):
     """The other impact vanishes there, and the free motion touches both stops. It does not depend on the steps."""
-    for name in ("LONGEST_STEP", "STRAIGHT"):
-        monkeypatch.setattr(solution_curve, name, factor * getattr(solution_curve, name))
-    curve = vs.bifurcation_curve(graze, ("b", "omega"), ((2.45, 9.0), (0.5, 0.8)))
+    curve = vs.bifurcation_curve(graze, ("b", "omega"), ((2.45, 9.0), (0.5, 0.8)), step=factor)
     found = [special for special in curve.special if special.type not in ("boundary", "resonant_graze", "flip_graze")]
     assert [special.type for special in found] == ["double_graze"]
     b, omega = (found[0].parameters[name] for name in ("b", "omega"))

@@ -7,9 +7,7 @@ from support.oscillators import PAPER
 from support.random_branches import attractors, random_oscillator
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.continuation import solution_curve
 from vibro_sweep.analysis.continuation.oscillators import BEYOND, Oscillators, Units
-from vibro_sweep.analysis.curves import curve_run
 from vibro_sweep.model.linear import family_of
 
 NAMES, BOX = ("b", "omega"), ((0.3, 9), (0.5, 0.8))
@@ -31,7 +29,7 @@ def same(one, other):
 
 
 @pytest.mark.slow
-def test_longer_steps_pass_no_strong_resonance(symmetric_branch, one_sided_branch, monkeypatch):
+def test_longer_steps_pass_no_strong_resonance(symmetric_branch, one_sided_branch):
     """Where a step led behind the end, farther than it had begun before it, the end was not looked for."""
     for branch, kind in ((symmetric_branch, "pitchfork"), (one_sided_branch, "neimark_sacker")):
         start = first(branch.special, kind)
@@ -41,25 +39,19 @@ def test_longer_steps_pass_no_strong_resonance(symmetric_branch, one_sided_branc
         expected = places(vs.bifurcation_curve(start, NAMES, BOX))
         assert "failed" not in [kind for kind, *_ in expected]
         for factor in (0.5, 2, 4):
-            with monkeypatch.context() as patch:
-                patch.setattr(solution_curve, "LONGEST_STEP", factor * solution_curve.LONGEST_STEP)
-                patch.setattr(solution_curve, "STRAIGHT", factor * solution_curve.STRAIGHT)
-                assert same(places(vs.bifurcation_curve(start, NAMES, BOX)), expected), factor
+            assert same(places(vs.bifurcation_curve(start, NAMES, BOX, step=factor)), expected), factor
 
 
-def same_whatever_the_step(special, names, bounds, monkeypatch):
+def same_whatever_the_step(special, names, bounds):
     """Its points of codimension two."""
     expected = places(vs.bifurcation_curve(special, names, bounds))
     for factor in (0.5, 2):
-        with monkeypatch.context() as patch:
-            patch.setattr(solution_curve, "LONGEST_STEP", factor * solution_curve.LONGEST_STEP)
-            patch.setattr(solution_curve, "STRAIGHT", factor * solution_curve.STRAIGHT)
-            assert same(places(vs.bifurcation_curve(special, names, bounds)), expected), factor
+        assert same(places(vs.bifurcation_curve(special, names, bounds, step=factor)), expected), factor
     return [kind for kind, *_ in expected]
 
 
 @pytest.mark.slow
-def test_an_orbit_that_is_born_next_to_the_side_of_the_box(monkeypatch):
+def test_an_orbit_that_is_born_next_to_the_side_of_the_box():
     """The step from the graze of a doubled orbit to its birth also leaves the bounds."""
     system = vs.System(
         mu_m=7.246127476057355, mu_k=2.287345399823902, zeta=0.01518081597191766, f2=0, omega=1.5505364507815478,
@@ -70,12 +62,12 @@ def test_an_orbit_that_is_born_next_to_the_side_of_the_box(monkeypatch):
     graze = first(vs.continue_orbit(orbit, "b", (0.3, 0.9)).special, "graze")
     reach, b, offset = 0.1 * graze.parameters["b"], graze.parameters["b"], system.offset
     bounds = ((b - reach, b + reach), (offset - reach, offset + reach))
-    assert same_whatever_the_step(graze, ("b", "offset"), bounds, monkeypatch).count("flip_graze") == 2
+    assert same_whatever_the_step(graze, ("b", "offset"), bounds).count("flip_graze") == 2
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("masses", "seed", "name"), [(3, 26, "offset"), (8, 1, "omega")])
-def test_nothing_is_invented_where_another_impact_vanishes(masses, seed, name, monkeypatch):
+def test_nothing_is_invented_where_another_impact_vanishes(masses, seed, name):
     """Multipliers have a pole there, and what tells Neimark-Sacker points changes its sign."""
     rng = np.random.default_rng([seed, ord("N") + ord(str(masses))])
     system = random_oscillator(rng, masses)
@@ -89,7 +81,7 @@ def test_nothing_is_invented_where_another_impact_vanishes(masses, seed, name, m
             at = special.parameters["b"]
             reach = 0.1 * at if name == "offset" else 0.05 * value
             bounds = ((0.9 * at, 1.1 * at), (value - reach, value + reach))
-            found += same_whatever_the_step(special, ("b", name), bounds, monkeypatch)
+            found += same_whatever_the_step(special, ("b", name), bounds)
     assert "double_graze" in found and "neimark_sacker_graze" not in found
 
 
@@ -148,12 +140,9 @@ def test_polynomials_stop_before_a_frequency_of_zero():
 
 
 @pytest.mark.slow
-def test_an_impact_that_vanishes_on_a_virtual_stretch_is_left_out(monkeypatch):
+def test_an_impact_that_vanishes_on_a_virtual_stretch_is_left_out():
     """With steps of twice the length another one vanishes in the same step, behind which the orbit is real."""
     record = records.read("curves")["paper, one side, neimark_sacker 1, resonance_1_4 3, fold 2"]
     special = curves.start_of_curve(record)
-    monkeypatch.setattr(solution_curve, "LONGEST_STEP", 2 * solution_curve.LONGEST_STEP)
-    monkeypatch.setattr(solution_curve, "STRAIGHT", 2 * solution_curve.STRAIGHT)
-    monkeypatch.setattr(curve_run, "FIRST_STEP", 2 * curve_run.FIRST_STEP)
-    curve = vs.bifurcation_curve(special, tuple(record["names"]), record["box"])
+    curve = vs.bifurcation_curve(special, tuple(record["names"]), record["box"], step=2)
     assert [one.type for one in curve.special] == ["boundary", "resonant_graze", "resonance_1_4"]

@@ -7,7 +7,7 @@ from support.oscillators import ONE_MASS, PAPER
 
 import vibro_sweep as vs
 from vibro_sweep.analysis.branches import branch_search
-from vibro_sweep.analysis.branches.branch_arrays import arrays_of, outline, special_point
+from vibro_sweep.analysis.branches.branch_arrays import arrays_of, special_point
 from vibro_sweep.analysis.branches.branch_switching import mirrored
 from vibro_sweep.analysis.branches.recognising import passes
 from vibro_sweep.analysis.periodic.periodic_orbit import orbit_of
@@ -48,7 +48,8 @@ def test_no_branch_comes_twice(tree):
 
 def test_orbits_are_recognised_on_their_branch(tree):
     def on(item, orbit):
-        return passes(outline(item.branch), "b", orbit.system, orbit._solution)
+        arrays = arrays_of(item.branch, item.branch.special[0].orbit.system.b)
+        return passes(arrays, "b", orbit.system, orbit._solution)
 
     points = tree[2].branch.points
     i = points.sizes["point"] // 2

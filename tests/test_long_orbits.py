@@ -9,7 +9,7 @@ from support.branches import repeated
 from support.oscillators import CHAIN, PAPER
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.branches.branch_arrays import orbit_at
+from vibro_sweep.analysis.branches.branch_orbits import orbit_at
 from vibro_sweep.analysis.continuation.first_point import followed_from
 from vibro_sweep.analysis.periodic.linearised import Linearised
 from vibro_sweep.analysis.windows.job import Job, window_of

@@ -3,7 +3,6 @@
 import pytest
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.continuation import solution_curve
 
 
 @pytest.fixture(scope="module")
@@ -19,18 +18,15 @@ def graze():
     return next(special for special in branch.special if special.type == "graze")
 
 
-def followed(graze, factor, monkeypatch):
-    with monkeypatch.context() as patch:
-        for name in ("LONGEST_STEP", "STRAIGHT"):
-            patch.setattr(solution_curve, name, factor * getattr(solution_curve, name))
-        curve = vs.bifurcation_curve(graze, ("b", "omega"), ((0.112, 0.448), (0.566, 0.885)))
+def followed(graze, factor):
+    curve = vs.bifurcation_curve(graze, ("b", "omega"), ((0.112, 0.448), (0.566, 0.885)), step=factor)
     return [(special.type, special.parameters["b"]) for special in curve.special]
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("factor", [0.5, 1, 2])
-def test_points_of_a_curve_do_not_depend_on_steps(graze, factor, monkeypatch):
-    fine, found = (followed(graze, f, monkeypatch) for f in (0.25, factor))
+def test_points_of_a_curve_do_not_depend_on_steps(graze, factor):
+    fine, found = (followed(graze, f) for f in (0.25, factor))
     assert [kind for kind, _ in fine].count("neimark_sacker_graze") > 2
     assert [kind for kind, _ in found] == [kind for kind, _ in fine]
     assert [b for _, b in found] == pytest.approx([b for _, b in fine], rel=1e-9)

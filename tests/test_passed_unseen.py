@@ -8,10 +8,8 @@ from support.drawn_branches import Case
 from support.same_branch import follow, rows
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.branches import branch_run
 from vibro_sweep.analysis.branches.crossings import explained, stands_alone
 from vibro_sweep.analysis.branches.looking import extremum
-from vibro_sweep.analysis.continuation import solution_curve
 from vibro_sweep.engine.continuation.between_points import FARTHER, dips
 from vibro_sweep.engine.simd.jit import exported
 
@@ -55,13 +53,10 @@ def test_a_pair_goes_out_where_a_fold_takes_one_in(beside_fold):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("factor", [0.5, 2])
-def test_they_do_not_depend_on_the_step(beside_fold, factor, monkeypatch):
-    monkeypatch.setattr(branch_run, "FIRST_STEP", factor * branch_run.FIRST_STEP)
-    for name in ("LONGEST_STEP", "STRAIGHT"):
-        monkeypatch.setattr(solution_curve, name, factor * getattr(solution_curve, name))
+def test_they_do_not_depend_on_the_step(beside_fold, factor):
     for branch in beside_fold[:2]:
         begun = next(special.orbit for special in branch.special if special.type == "fold")
-        same_points(vs.continue_orbit(begun, "b", (0.0856, 0.3425)), types(beside_fold[2]), 1e-12)
+        same_points(vs.continue_orbit(begun, "b", (0.0856, 0.3425), step=factor), types(beside_fold[2]), 1e-12)
 
 
 @pytest.mark.slow

@@ -16,7 +16,7 @@ import pytest
 from support.scenes import PAPER, SCENES, arrays_of, assert_same_bits, scene_of
 
 import vibro_sweep as vs
-from vibro_sweep.driver import blocks, cost, jobs, memory_needed, pool, sweep
+from vibro_sweep.driver import blocks, cost, jobs, memory_needed, pool
 from vibro_sweep.driver.compute import BlockError, RunError, compute
 from vibro_sweep.engine.records import result_of
 from vibro_sweep.engine.simd.lanes import LANES
@@ -91,12 +91,11 @@ def whole(tmp_path_factory):
     return arrays_of(path)
 
 
-def test_any_order_and_a_window_that_follows_the_workers(tmp_path, monkeypatch):
+def test_any_order_and_a_window_that_follows_the_workers(tmp_path):
     scene = scene_of(SCENES["plane"])
     vs.run(scene, tmp_path / "own.h5")
-    monkeypatch.setattr(sweep, "points_per_block", lambda *_: 1)
     with serving(Shuffling(35)) as pool:
-        vs.run(scene, tmp_path / "out.h5", executor=pool)
+        vs.run(scene, tmp_path / "out.h5", executor=pool, block=1)
     assert pool.most == {1: 1, 3: 3}
     assert len(pool.order) == 35 and pool.order != sorted(pool.order, key=str)
     assert_same_bits(arrays_of(tmp_path / "out.h5"), arrays_of(tmp_path / "own.h5"))

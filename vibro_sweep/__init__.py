@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 
 from vibro_sweep.model import notices
 
-__version__ = "0.2.0"
+__version__ = "0.3.0.dev0"
 
 __all__ = [
     "Oscillator",

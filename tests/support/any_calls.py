@@ -125,6 +125,7 @@ def calls(made: dict[str, Any]) -> dict[str, Call]:
     bounds = each("bounds", (0.39, 0.41), [0.39, 0.41], np.array([0.39, 0.41]), xr.DataArray([0.39, 0.41]))
     progress = each("progress", None, print_nothing)
     parameter = each("parameter", "b", np.str_("b"))
+    step = each("step", 1.0, 2, np.float64(0.5))
     how = each("workers", None, 1, 2) | each("mode", "new", "overwrite", "resume")
     how |= each("output", "out.h5", Path("out.h5")) | each("progress", None, print_nothing)
     width = each("width", None, 85, np.float64(178.0))
@@ -182,7 +183,8 @@ def calls(made: dict[str, Any]) -> dict[str, Call]:
         "BifurcationCurve.save": Call(made["BifurcationCurve"].save, each("path", "new.h5", Path("new.h5"))),
         "load": Call(vs.load, each("path", "orbit.json", Path("orbit.json"))),
         "born_at_grazing": Call(vs.born_at_grazing, system | each("periods", 1, 1.0)),
-        "continue_orbit": Call(vs.continue_orbit, each("orbit", orbit) | parameter | bounds | progress),
+        "Branch.orbit": Call(made["Branch"].orbit, each("point", 0, -1, np.int64(1))),
+        "continue_orbit": Call(vs.continue_orbit, each("orbit", orbit) | parameter | bounds | progress | step),
         "follow_branches": Call(
             vs.follow_branches,
             each("orbit", orbit) | parameter | bounds | each("follow", ("graze",), [], ["flip", "pitchfork"])
@@ -194,7 +196,7 @@ def calls(made: dict[str, Any]) -> dict[str, Call]:
             vs.bifurcation_curve,
             each("special", special) | each("parameters", ("b", "R"), ["b", "R"])
             | each("bounds", around(special), np.array(around(special)), [list(one) for one in around(special)])
-            | progress | each("virtual", True, False, np.bool_(True)),
+            | progress | each("virtual", True, False, np.bool_(True)) | step,
         ),
         "BifurcationCurve.plot": Call(made["BifurcationCurve"].plot, each("others", made["BifurcationCurve"]) | width),
         "sweep": Call(vs.sweep, system | axes | observe | start | short | section | trajectory | how),
@@ -225,7 +227,9 @@ def calls(made: dict[str, Any]) -> dict[str, Call]:
             | each("bounds", None, (6.5, 6.7), np.array([6.5, 6.7])),
         ),
         "run": Call(
-            vs.run, each("scene", scene, made["Continuation"]) | how | each("executor", None, made["Executor"])
+            vs.run,
+            each("scene", scene, made["Continuation"]) | how | each("executor", None, made["Executor"])
+            | each("block", None, 1),
         ),
         "open": Call(vs.open, each("path", "sweep.h5", Path("sweep.h5"))),
         "windows": Call(

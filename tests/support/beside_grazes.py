@@ -12,7 +12,7 @@ import numpy as np
 from support import compliant_branches
 from support.drawn_branches import drawn_case
 from support.same_branch import CLOSE, TooLongError, follow
-from vibro_sweep.analysis.branches.branch_arrays import arrays_of, orbit_at
+from vibro_sweep.model.linear import family_of
 
 MODELS = ("two_mass", "one_mass", "chain", "linear")
 DECADES = range(3, 17)  # of the way from the graze to the second point beside it: the first may be as near as 1e-8
@@ -33,16 +33,16 @@ def told(special) -> tuple:
 
 def starts(branch, case, decades=DECADES):
     """(graze, decade, orbit) beside the grazes at the ends of a branch; None where Newton's method finds no orbit."""
-    arrays, last = arrays_of(branch, branch._start.family.numbers[case.name]), branch.points.sizes["point"] - 1
-    values, system = arrays["value"], case.orbit.system
+    values, last = branch.points[case.name].values, branch.points.sizes["point"] - 1
     for graze, here, beside in ((branch.begins, 0, 2), (branch.ends, last, last - 2)):
         if graze.type != "graze" or last < 2:
             continue
-        step = orbit_at(arrays, beside, system)._solution.u - orbit_at(arrays, here, system)._solution.u
+        begin = branch.orbit(here)
+        step = branch.orbit(beside)._solution.u - begin._solution.u
         for decade in decades:
             share = 10.0**-decade
-            there = system.replace(**{case.name: float(values[here] + share * (values[beside] - values[here]))})
-            guess = orbit_at(arrays, here, there)._solution
+            there = begin.system.replace(**{case.name: float(values[here] + share * (values[beside] - values[here]))})
+            guess = replace(begin._solution, family=family_of(there))
             found = replace(guess, u=guess.u + share * step).corrected()
             real = found is not None and found.real
             yield graze, decade, type(case.orbit)(there, "ok", found.reduced(), None) if real else None

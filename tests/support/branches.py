@@ -1,16 +1,11 @@
 """Branches of the paper's periodic orbits in b."""
 
-from contextlib import contextmanager
-
 import numpy as np
 import pytest
 from reference.shooting import AnyShooting, Shooting
 
 import vibro_sweep as vs
 from support.oscillators import PAPER
-from vibro_sweep.analysis.branches import branch_run
-from vibro_sweep.analysis.branches.compiled_stepper import CompiledStepper
-from vibro_sweep.analysis.continuation import solution_curve
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses.flow import contact_coordinates
 
@@ -25,25 +20,6 @@ def same_points(branch, expected, tolerance=1e-12):
     found = types(branch)
     assert [kind for kind, _ in found] == [kind for kind, _ in expected]
     assert [value for _, value in found] == pytest.approx([value for _, value in expected], abs=tolerance)
-
-
-@contextmanager
-def other_steps(factor):
-    """Branches are followed by steps `factor` times as long as they are otherwise. Compiled steps are seen to do so."""
-    longest, straight, first = solution_curve.LONGEST_STEP, solution_curve.STRAIGHT, branch_run.FIRST_STEP
-    begin, seen = CompiledStepper.__init__, set()
-
-    def watched(stepper, point, origin, length):
-        begin(stepper, point, origin, length)
-        seen.add((stepper.path.longest, stepper.path.straight, length))
-
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(solution_curve, "LONGEST_STEP", factor * longest)
-        patch.setattr(solution_curve, "STRAIGHT", factor * straight)
-        patch.setattr(branch_run, "FIRST_STEP", factor * first)
-        patch.setattr(CompiledStepper, "__init__", watched)
-        yield
-    assert seen == {(factor * longest, factor * straight, factor * first)}
 
 
 @pytest.fixture(scope="session")

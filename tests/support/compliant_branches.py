@@ -10,7 +10,7 @@ import numpy as np
 
 from support.drawn_branches import MOST_IMPACTS, Case, drawn_number, drawn_oscillator, recorded
 from support.same_branch import TooLongError, differences, follow, listed
-from vibro_sweep.analysis.branches.branch_arrays import arrays_of, orbit_at
+from vibro_sweep.analysis.branches.branch_arrays import arrays_of
 from vibro_sweep.model.bifurcations import BY_NAME
 
 MODELS = ("two_mass", "one_mass", "chain", "linear")
@@ -83,11 +83,10 @@ def apart_at_ends(branch) -> list[str]:
 
 def other_starts(branch, case: Case, rng, most=3):
     """(words, orbit) at points of the branch."""
-    arrays = arrays_of(branch, case.orbit._solution.family.numbers[case.name])
-    count = len(arrays["value"])
+    count = branch.points.sizes["point"]
     for k in rng.permutation(np.unique(np.r_[1, count - 2, rng.integers(1, count - 1, 3)]))[:most].tolist():
-        system = case.orbit.system.replace(**{case.name: float(arrays["value"][k])})
-        there = orbit_at(arrays, k, system)._solution
+        orbit = branch.orbit(k)
+        system, there = orbit.system, orbit._solution
         found = there.corrected()  # which from a fold leads anywhere
         if found is not None and np.abs((found.u - there.u) / there.units).max() < NEAR:
             yield f"point {k}", type(case.orbit)(system, "ok", found.reduced(), None)

@@ -12,7 +12,7 @@ import numpy as np
 
 import vibro_sweep as vs
 from support.compliant_branches import drawn_case, search
-from support.random_curves import TYPES, key, steps_of
+from support.random_curves import TYPES, key
 from support.same_branch import TooLongError, follow
 
 OTHERS = ("omega", "b", "zeta", "k_stop")  # the other number: the first that is not the branch's
@@ -54,8 +54,7 @@ def study(seed: int, most=2, beside=BESIDE) -> tuple[collections.Counter, list[s
         wrong += [f"{where}: {one.type} with {one.multipliers}" for one in curve.special if is_misnamed(one)]
         ways = []
         for factor in (0.5, 2.0):
-            with steps_of(factor):
-                ways.append((f"steps times {factor}", vs.bifurcation_curve(special, names, bounds)))
+            ways.append((f"steps times {factor}", vs.bifurcation_curve(special, names, bounds, step=factor)))
         counted["again"] += len(ways)
         for way, again in ways:
             pairs = [sorted(map(key, known(one))) for one in (curve, again)]

@@ -5,7 +5,6 @@ python tests/support/random_curves.py 0 100     # prints what disagrees, and a s
 """
 
 import sys
-from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -15,7 +14,6 @@ from support.curves import chosen, solution_at
 from support.random_branches import attractors, random_system
 from vibro_sweep.analysis.branches.branch_run import stop_and_impact
 from vibro_sweep.analysis.branches.special import SpecialPoint
-from vibro_sweep.analysis.continuation import solution_curve
 from vibro_sweep.analysis.periodic.periodic_orbit import orbit_of
 
 TYPES = ("fold", "flip", "pitchfork", "neimark_sacker", "graze")
@@ -61,8 +59,8 @@ def _follow(report: Report, special, rng) -> None:
     k = int(rng.choice(chosen(curve, 9)))
     ways = {f"from point {k}": vs.bifurcation_curve(special_at(curve, k, special), ("b", "omega"), bounds)}
     for factor in (0.5, 2.0):
-        with steps_of(factor):
-            ways[f"with steps of {factor} times the length"] = vs.bifurcation_curve(special, ("b", "omega"), bounds)
+        again = vs.bifurcation_curve(special, ("b", "omega"), bounds, step=factor)
+        ways[f"with steps of {factor} times the length"] = again
     report.again += len(ways)
     for way, other in ways.items():
         pairs = [sorted(map(key, one.special)) for one in (curve, other)]
@@ -73,17 +71,6 @@ def _follow(report: Report, special, rng) -> None:
             report.wrong.append(f"{where}: other points {way}: {pairs}")
     if len({key(one) for one in curve.special}) < len(curve.special) and not curve.closed:
         report.wrong.append(f"{where}: a point twice")
-
-
-@contextmanager
-def steps_of(factor: float):
-    """Within, steps along a curve, and the angles between them, may be so much larger."""
-    before = solution_curve.LONGEST_STEP, solution_curve.STRAIGHT
-    solution_curve.LONGEST_STEP, solution_curve.STRAIGHT = (factor * most for most in before)
-    try:
-        yield
-    finally:
-        solution_curve.LONGEST_STEP, solution_curve.STRAIGHT = before
 
 
 def key(special):

@@ -1,14 +1,11 @@
 """The same branch followed from several of its orbits, with shorter and longer steps: what is different."""
 
-import contextlib
 from typing import NamedTuple
 
 import numpy as np
 
 import vibro_sweep as vs
 from support.drawn_branches import Case
-from vibro_sweep.analysis.branches import branch_run
-from vibro_sweep.analysis.continuation import solution_curve
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 
 CLOSE = 1e-9  # relative to the parameter or its range: values of one special point differ by less
@@ -20,30 +17,12 @@ class TooLongError(Exception):
     """A branch with more points than MOST_POINTS, each way."""
 
 
-@contextlib.contextmanager
-def steps(factor: float):
-    """First and longest steps, and the turn that a step may make, so many times as large."""
-    places = (
-        (solution_curve, "LONGEST_STEP"), (solution_curve, "STRAIGHT"),
-        (branch_run, "FIRST_STEP"), (branch_run, "OF_STABLE"),
-    )  # fmt: skip
-    kept = [(place, name, getattr(place, name)) for place, name in places]
-    for place, name, value in kept:
-        setattr(place, name, factor * value)
-    try:
-        yield
-    finally:
-        for place, name, value in kept:
-            setattr(place, name, value)
-
-
 def follow(case: Case, factor: float = 1.0):
     def look(points, value):
         if points > MOST_POINTS:
             raise TooLongError(str(case))
 
-    with steps(factor):
-        return vs.continue_orbit(case.orbit, case.name, case.bounds, look)
+    return vs.continue_orbit(case.orbit, case.name, case.bounds, look, step=factor)
 
 
 class Listed(NamedTuple):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.branches.branch_arrays import solution_of
+from vibro_sweep.analysis.branches.branch_orbits import solution_of
 from vibro_sweep.analysis.periodic.periodic_orbit import orbit_of
 from vibro_sweep.model.linear import family_of
 

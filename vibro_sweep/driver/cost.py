@@ -155,11 +155,14 @@ def duration(seconds: float) -> str:
     return f"{seconds / 60:.0f} min" if seconds < 6000 else f"{seconds / 3600:.3g} h"
 
 
-def points_per_block(scene: Scene, orbit_seconds: float, workers: int, seconds: float) -> int:
-    """Points that take about so many seconds; fewer, where they would need too much memory or leave workers idle."""
+def points_per_block(scene: Scene, orbit_seconds: float, workers: int, seconds: float, asked: int | None = None) -> int:
+    """Points that take about so many seconds, or as many as are asked for; fewer, where they would need too much
+    memory; without being asked, where they would leave workers idle."""
     orbits = 1 if scene.start.kind == "follow" else scene.n_starts  # of a point in one block
-    by_time = seconds / (orbits * orbit_seconds)
     by_memory = orbits_per_block(scene, workers) / orbits
+    if asked is not None:
+        return max(1, int(min(asked, by_memory)))
+    by_time = seconds / (orbits * orbit_seconds)
     count = max(1, int(min(by_time, by_memory, _fair(scene, workers))))
     return count - count % LANES if count > LANES else count  # that many orbits are computed at once
 

@@ -11,10 +11,12 @@ import numpy as np
 from vibro_sweep.driver.progress import given_or_bar
 from vibro_sweep.driver.run_continuation import run_continuation
 from vibro_sweep.driver.sweep import RunReport, check_how, run_sweep
-from vibro_sweep.model.arguments import check_type
+from vibro_sweep.model.arguments import check_type, checked_count
 from vibro_sweep.model.bifurcations import CODIMENSION_TWO, TYPES
 from vibro_sweep.model.branch_file import CHART
+from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.files import file_to_write
+from vibro_sweep.model.refusals import not_allowed
 from vibro_sweep.scene import Continuation, Scene
 from vibro_sweep.store.attributes import text
 from vibro_sweep.store.opening import opened
@@ -29,6 +31,7 @@ def run(
     executor: Executor | None = None,
     progress: Callable[[int, int], None] | None = None,
     mode: Literal["new", "resume", "overwrite"] = "new",
+    block: int | None = None,
 ) -> RunReport:
     """Compute a scene and write its file.
 
@@ -43,6 +46,8 @@ def run(
     progress : called as progress(done, total) in orbits, branches or curves, from this thread; left out: a bar on a
         terminal or in a notebook, unless the level of the logger `vibro_sweep` is WARNING
     mode : "new" (nothing that exists is replaced), "resume" (continue `output`.part where it stopped) or "overwrite"
+    block : of a sweep, points of which a worker computes all starts at once; fewer where memory is short; left out: as
+        many as take a moment
 
     An `output` that is complete, and made by the same scene and code, is left as it is: the report is that of its run.
     Results do not depend on workers, executor, block size or interruptions, bit for bit. Memory is that of the blocks
@@ -64,8 +69,12 @@ def run(
     check_type("scene", scene, (Scene, Continuation), "a Scene or a Continuation, as `load_scene` returns it")
     output = file_to_write("output", output)
     check_how(workers, executor, progress, mode)
+    if block is not None:
+        block = checked_count("block", block, 1)
     if isinstance(scene, Scene):
-        return run_sweep(scene, output, workers, executor, progress, mode)
+        return run_sweep(scene, output, workers, executor, progress, mode, block)
+    if block is not None:
+        raise ArgumentError(not_allowed("block", block, "None of a scene of branches or curves"))
     with given_or_bar(progress, 0) as tell:
         computed = run_continuation(scene, output, workers, executor, tell, mode)
     return _report(output, computed)

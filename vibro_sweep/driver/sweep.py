@@ -83,6 +83,7 @@ def run_sweep(
     executor: Executor | None = None,
     progress: Callable[[int, int], None] | None = None,
     mode: str = "new",
+    block: int | None = None,
 ) -> RunReport:
     """Compute a sweep and write its file; arguments and errors as of `run`."""
     total = scene.n_points
@@ -97,7 +98,8 @@ def run_sweep(
             if tell:
                 tell(done, total)
             if missing:
-                with closing(_results(scene, file, missing, workers or available_cores(), executor)) as results:
+                workers_here = workers or available_cores()
+                with closing(_results(scene, file, missing, workers_here, executor, block)) as results:
                     for box, arrays in results:
                         file.write(box, arrays)
                         done += arrays["status"].size
@@ -132,16 +134,16 @@ def _complete(scene: Scene, file: h5py.File) -> None:
 
 
 def _results(
-    scene: Scene, file: store.Writer, missing: int, workers: int, executor: Executor | None
+    scene: Scene, file: store.Writer, missing: int, workers: int, executor: Executor | None, points: int | None
 ) -> Iterator[tuple]:
-    """Results of all blocks with one of the missing orbits, as they come."""
+    """Results of all blocks, of so many points, with one of the missing orbits, as they come."""
     count = workers if executor is None else _worker_count(executor, workers)
     cost = interruptible(orbit_cost, scene, count)
     orbits = orbits_per_block(scene, count)
     most = blocks_under_way(scene, orbits, here=executor is None)
     halt = new_halt()
     pool = executor or ThreadPoolExecutor(min(workers, most), initializer=heed, initargs=(halt,))
-    size = points_per_block(scene, cost.seconds, count, BLOCK_SECONDS if executor is None else SECONDS)
+    size = points_per_block(scene, cost.seconds, count, BLOCK_SECONDS if executor is None else SECONDS, points)
     if executor is None:
         seconds = run_seconds(scene, cost, missing, count)
         seconds *= interruptible(crowding, cost, threads_of(scene, count)) if seconds > WORTH_SAYING else 1.0

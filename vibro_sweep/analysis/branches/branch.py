@@ -12,11 +12,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vibro_sweep.analysis.branches import branch_text
+from vibro_sweep.analysis.branches.branch_orbits import Arrays, orbit_at, outline
 from vibro_sweep.analysis.branches.branch_points import dataset, dataset_from_file
 from vibro_sweep.analysis.branches.branch_start import NoStartError, changes_rests, start_of_run
 from vibro_sweep.analysis.branches.compiled_stepper import row_of
 from vibro_sweep.analysis.branches.free_run import run_from
-from vibro_sweep.analysis.branches.sizes import check_width
+from vibro_sweep.analysis.branches.sizes import check_width, checked_step
 from vibro_sweep.analysis.branches.special import SpecialPoint, table_of
 from vibro_sweep.analysis.branches.sticking import sticking_onset
 from vibro_sweep.analysis.continuation.allowed_range import in_range
@@ -26,7 +27,7 @@ from vibro_sweep.analysis.periodic.orbit_portrait import portrait
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.analysis.single.result import FileResult
-from vibro_sweep.model.arguments import check_call, check_type, checked_interval, checked_word
+from vibro_sweep.model.arguments import check_call, check_type, checked_count, checked_interval, checked_word
 from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.linear import family_of
 from vibro_sweep.model.refusals import not_allowed
@@ -86,6 +87,30 @@ class Branch(FileResult):
             return dataset_from_file(self._arrays, self.parameter)
         return dataset(self._start, self.parameter, self._frame, self._rows)
 
+    def orbit(self, point: int) -> PeriodicOrbit:
+        """The orbit at a point, as `points` counts them from 0; -1 is the last.
+
+        Raises ValueError for a point that there is not.
+
+        Examples
+        --------
+        >>> import vibro_sweep as vs
+        >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
+        >>> branch = vs.continue_orbit(vs.periodic_orbit(system, itinerary="R"), "b", (3.9, 4.1))
+        >>> orbit = branch.orbit(-1)
+        >>> orbit.itinerary, orbit.system.b
+        ('R', 4.1)
+        """
+        arrays = self._outline
+        count = len(arrays["value"])
+        point = checked_count("point", point, -count, count - 1)
+        system = self.special[0].orbit.system.replace(**{self.parameter: float(arrays["value"][point])})
+        return orbit_at(arrays, point, system)
+
+    @cached_property
+    def _outline(self) -> Arrays:
+        return self._arrays or outline(self._start, self.parameter, self._frame, self._rows)
+
     def _table(self) -> dict[str, list]:
         return table_of(self.special)
 
@@ -94,10 +119,13 @@ class Branch(FileResult):
 
 
 @one_thread()
-def continue_orbit(orbit: PeriodicOrbit, parameter: str, bounds: tuple[float, float], progress=None) -> Branch:
+def continue_orbit(
+    orbit: PeriodicOrbit, parameter: str, bounds: tuple[float, float], progress=None, step: float = 1.0
+) -> Branch:
     """Follow a periodic orbit in both directions of `parameter`, a number of its system, within bounds = (lo, hi).
 
     `progress(points, value)` is called now and then with the points of this direction so far, and where they are.
+    `step` multiplies the lengths of all steps: shorter ones give more points, and the same special points.
 
     A branch that comes to where the number is not allowed any more ends there, with the type "boundary". What fails is
     told by `.status`.
@@ -124,10 +152,11 @@ def continue_orbit(orbit: PeriodicOrbit, parameter: str, bounds: tuple[float, fl
         allowed = "another number: an orbit that rests after one impact does so at R = 0"
         raise ArgumentError(not_allowed("parameter", parameter, allowed))
     lo, hi = checked_interval("bounds", bounds, family.numbers[parameter])
+    step = checked_step(step)
     lo, hi = (in_range(orbit.system, parameter, bound) for bound in (lo, hi))
     check_width("bounds", solution, parameter, lo, hi)
     try:
-        first = start_of_run(solution, parameter, lo, hi)
+        first = start_of_run(solution, parameter, lo, hi, step=step)
     except NoStartError:
         return not_followed(orbit, parameter)
     start, down = first.curve.orbit, run_from(first.backwards(), orbit.system, progress)

@@ -10,19 +10,16 @@ from dataclasses import replace
 import numpy as np
 
 from vibro_sweep.analysis.branches.branch import Branch
-from vibro_sweep.analysis.branches.branch_points import columns, impacts
+from vibro_sweep.analysis.branches.branch_orbits import Arrays, orbit_at, outline
+from vibro_sweep.analysis.branches.branch_points import columns
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.continuation.starting_orbit import keeps_symmetry
-from vibro_sweep.analysis.periodic.contact_numbers import one_plus_R
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit, orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.engine.impulses.free_modes import checked_cells
 from vibro_sweep.model.bifurcations import BIRTHS, CODES, CRITICALITIES, KINDS, TYPES
 from vibro_sweep.model.linear import family_of, forcing_period
 from vibro_sweep.model.outcomes import BRANCHES
 from vibro_sweep.model.state import state
-
-Arrays = dict[str, np.ndarray]
 
 # n points, K impacts, s special points, N masses
 SHAPES = {
@@ -39,21 +36,6 @@ SHAPES = {
 }
 
 
-def outline(branch: Branch) -> Arrays:
-    """The arrays of a branch by which orbits on it are recognised."""
-    start = branch._start
-    t, sides, v = impacts(start, branch.parameter, branch._frame, branch._rows)
-    return {
-        "branch_period": np.int32(start.whole().half_periods // 2),
-        "branch_symmetric": np.int8(start.sigma == -1),
-        "value": branch._rows.p,
-        "impact_t": t,
-        "impact_v": v,
-        "impact_t_off": _rest_ends(branch, t),
-        "impact_side": sides.astype(np.int8),
-    }
-
-
 def arrays_of(branch: Branch, origin: float) -> Arrays:
     """The arrays of a branch; origin: the parameter of the orbit that it was followed from."""
     if branch._arrays is not None:
@@ -62,7 +44,7 @@ def arrays_of(branch: Branch, origin: float) -> Arrays:
     data = {name: values for name, (_, values) in columns(start, parameter, branch._frame, branch._rows).items()}
     p, special = data[parameter], branch.special
     words = state(data["multiplier_re"].shape[1] // 2)
-    result = outline(branch) | common(branch, start, (parameter,), p, CODES)
+    result = outline(start, parameter, branch._frame, branch._rows) | common(branch, start, (parameter,), p, CODES)
     result |= {
         "branch_status": np.int8(list(BRANCHES).index(branch.status)),
         "branch_origin": np.int32(np.argmin(np.abs(p - origin))),
@@ -85,19 +67,6 @@ def arrays_of(branch: Branch, origin: float) -> Arrays:
     return {name: np.asarray(values) for name, values in result.items()}
 
 
-def _rest_ends(branch: Branch, t: np.ndarray) -> np.ndarray:
-    """(n, K) ends of rests beside the impacts `t` in their canonical order, from those of the branch's own frame."""
-    start, rows = branch._start, branch._rows
-    ends = np.full(t.shape, np.nan)
-    K, (first, _) = start.K, branch._frame
-    for j, k in enumerate(start.rests):
-        lengths = rows.ends[:, j] - rows.t[:, k]
-        for place in range(k, t.shape[1], K):
-            at = (place - first) % t.shape[1]
-            ends[:, at] = t[:, at] + lengths
-    return ends
-
-
 def common(of, start: Solution, names: tuple[str, ...], p: np.ndarray, codes: Mapping[str, int]) -> Arrays:
     """Arrays of a branch or curve of orbits like `start` in the parameters `names`: what it is, where its special
     points are. p : (n,) or (n, 2); codes : of their types"""
@@ -118,26 +87,6 @@ def common(of, start: Solution, names: tuple[str, ...], p: np.ndarray, codes: Ma
         "special_point": np.array(points, np.int32),
         "special_error": np.array([one.error for one in of.special], float),
     }
-
-
-def solution_of(arrays: Arrays, system, t, v, t_off) -> Solution:
-    """The solution with these impacts (K,) of a branch, for the oscillator `system`; not corrected. TooStiffError."""
-    family, symmetric = family_of(system), bool(arrays["branch_symmetric"])
-    period, sides = int(arrays["branch_period"]), arrays["impact_side"]
-    K = len(sides) // 2 if symmetric else len(sides)
-    sides = tuple(map(int, sides[:K]))
-    rests = tuple(np.flatnonzero(np.isfinite(t_off[:K])).tolist())
-    D = -one_plus_R(family.linear, sides) * v[:K]
-    u = np.concatenate([t[:K], D, t_off[list(rests)]])
-    sigma, half_periods = (-1, period) if symmetric else (1, 2 * period)
-    checked_cells(family.linear, half_periods)
-    return Solution(family, sigma, half_periods, sides, u, 0.0, rests)
-
-
-def orbit_at(arrays: Arrays, point: int, system) -> PeriodicOrbit:
-    """The orbit at a point of a branch; `system` has the parameter's value there."""
-    solution = solution_of(arrays, system, *(arrays[name][point] for name in ("impact_t", "impact_v", "impact_t_off")))
-    return orbit_of(system, solution)
 
 
 def branch_of(arrays: Arrays, parameter: str, system) -> Branch:

@@ -45,7 +45,7 @@ class BranchRun:
         """stable : only as far as the orbit is stable, that is to the first bifurcation."""
         self.first, self.curve, self.system, self.progress, self.stable = first, first.curve, system, progress, stable
         (self.name,), self.bounds = self.curve.names, self.curve.bounds[0]
-        self.first_step = OF_STABLE if stable else FIRST_STEP
+        self.first_step = self.curve.step_factor * (OF_STABLE if stable else FIRST_STEP)
         self.special: list[SpecialPoint] = []
         self.closed = False
         self.rows: list[Rows] = []

@@ -23,10 +23,13 @@ class NoStartError(VibroSweepError, ValueError):
     """Newton's method stands still neither at an orbit nor beside it."""
 
 
-def start_of_run(solution: Solution, name: str, lo: float, hi: float, stable: bool = False) -> Point | FreePoint:
+def start_of_run(
+    solution: Solution, name: str, lo: float, hi: float, stable: bool = False, step: float = 1.0
+) -> Point | FreePoint:
     """This orbit as a point of its branch, towards larger parameters, or its neighbour within the bounds where it is a
     special point itself, or so nearly a fold that Newton's method does not stand still there. stable : only a stable
-    one, so that a stable orbit and its neighbour lie on the same side of the special point.
+    one, so that a stable orbit and its neighbour lie on the same side of the special point; step : of the lengths of
+    steps along the branch, a factor.
 
     Raises NoStartError where it does not beside it either; ValueError where no orbit beside a special point is real and
     within the bounds.
@@ -36,10 +39,10 @@ def start_of_run(solution: Solution, name: str, lo: float, hi: float, stable: bo
     unit = max(hi - lo, NARROW * max(abs(lo), abs(hi)))
     together = contacts_are_one(solution)
     if solution.K:
-        curve = branch_through(solution, name, unit, (lo, hi))
+        curve = branch_through(solution, name, unit, (lo, hi), step)
         first = None if together else start_of_branch(curve)
     else:
-        curve = FreeBranch(solution, (name,), unit, ((lo, hi),))
+        curve = FreeBranch(solution, (name,), unit, ((lo, hi),), step)
         first = curve.at(solution.family.numbers[name], 1.0)
     if first is not None and not is_special(first):
         return first
@@ -55,7 +58,7 @@ def start_of_run(solution: Solution, name: str, lo: float, hi: float, stable: bo
                 and is_real(beside)
                 and (is_stable(beside) or not stable)
             ):
-                there = followed_from(beside.solution, name, unit, (lo, hi)) if solution.K else beside
+                there = followed_from(beside.solution, name, unit, (lo, hi), step) if solution.K else beside
                 if there is not None:
                     return there
     if first is None:

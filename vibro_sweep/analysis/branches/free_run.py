@@ -29,12 +29,14 @@ ROUNDED = 48 * float(np.finfo(float).eps)  # of the parameter
 
 @dataclass(frozen=True)
 class FreeBranch:
-    """The motion `orbit` without impacts along a parameter; unit: of steps; bounds: of the parameter."""
+    """The motion `orbit` without impacts along a parameter; unit: of steps; bounds: of the parameter;
+    step_factor: of the lengths of steps."""
 
     orbit: Solution
     names: tuple[str]
     unit: float
     bounds: tuple[tuple[float, float]]
+    step_factor: float
 
     def at(self, value: float, rate: float) -> "FreePoint | None":
         """The point with this parameter; None where there is no such motion."""
@@ -70,7 +72,7 @@ class FreeRun(BranchRun):
 
     def follow(self) -> None:
         """Follow the branch to its end."""
-        a, count, length = self.first, 1, self.first_step
+        a, count, length, longest = self.first, 1, self.first_step, self.curve.step_factor * LONGEST_STEP
         self._add(a)
         while count < MOST_POINTS and length >= SHORTEST_STEP:
             length = min(length, longest_step(a))
@@ -90,7 +92,7 @@ class FreeRun(BranchRun):
             if b.value in self.bounds:
                 self.special.append(self._at("boundary", b, 0.0))
                 return
-            a, count, length = b, count + 1, min(1.5 * length, LONGEST_STEP)
+            a, count, length = b, count + 1, min(1.5 * length, longest)
             self._show_progress(count, a.value)
         self.special.append(self._at("failed", a, math.nan))
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from vibro_sweep.analysis.branches import branch_text
 from vibro_sweep.analysis.branches.branch import Branch, continue_orbit
-from vibro_sweep.analysis.branches.branch_arrays import Arrays, outline
+from vibro_sweep.analysis.branches.branch_orbits import Arrays, outline
 from vibro_sweep.analysis.branches.branch_search import Branches, beyond, followed
 from vibro_sweep.analysis.branches.search import Task
 from vibro_sweep.analysis.branches.seeds import packed, seed_of
@@ -81,7 +81,10 @@ def follow_branches(
         result = []
         for name, task in zip(names, tasks, strict=True):
             branches[name] = branch = followed(task, tell) if branches else first
-            result.append(outline(branch) | packed(beyond(branch, task), (parameter,)))
+            result.append(
+                outline(branch._start, parameter, branch._frame, branch._rows)
+                | packed(beyond(branch, task), (parameter,))
+            )
         return result
 
     lo, hi = map(float, bounds)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.branch_arrays import Arrays, solution_of
+from vibro_sweep.analysis.branches.branch_orbits import Arrays, solution_of
 from vibro_sweep.analysis.periodic.itinerary import word
 from vibro_sweep.analysis.periodic.solution import Solution
 

@@ -6,8 +6,10 @@ import numpy as np
 
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.model.errors import ArgumentError
+from vibro_sweep.model.real import number_of
 from vibro_sweep.model.refusals import not_allowed
 
+STEPS = (0.01, 10.0)  # factors of the lengths of steps: shorter ones fill the points of a branch, longer ones fail
 WIDEST = 1e12  # times the size of a number: in wider bounds steps would be rounding
 LEAST = 1e-3  # of what changes the oscillator as a whole: parameters nearer to 0 are as large
 
@@ -50,3 +52,11 @@ def check_width(key: str, solution: Solution, name: str, lo: float, hi: float) -
         raise ArgumentError(
             not_allowed(key, [lo, hi], f"at most {WIDEST:g} times as wide as {name} is large, {size:.3g}")
         )
+
+
+def checked_step(value) -> float:
+    """The factor of the lengths of steps. Raises ValueError."""
+    number, (least, most) = number_of(value), STEPS
+    if number is None or not least <= number <= most:
+        raise ArgumentError(not_allowed("step", value, f"a number >= {least:g} and <= {most:g}"))
+    return number

@@ -39,10 +39,12 @@ def _across(curve: SolutionCurve, guess: Point) -> Point | None:
     return None if row is None else curve.correct(guess, np.copysign(1.0, row[-3]) * row)
 
 
-def followed_from(solution: Solution, name: str, unit: float, bounds=(-np.inf, np.inf)) -> Point | None:
+def followed_from(
+    solution: Solution, name: str, unit: float, bounds=(-np.inf, np.inf), step: float = 1.0
+) -> Point | None:
     """`start_of_branch` of an orbit in this parameter; None also where the oscillator does not allow steps."""
     try:
-        return start_of_branch(branch_through(solution, name, unit, bounds))
+        return start_of_branch(branch_through(solution, name, unit, bounds, step))
     except ValueError:
         return None
 

@@ -32,9 +32,10 @@ class NoPlaneError(VibroSweepError, ValueError):
 class SolutionCurve:
     """A branch in one parameter, a curve of one kind in two, or a single point, through `start`."""
 
-    def __init__(self, start: Start, names: tuple[str, ...], bounds, unit=None):
-        """bounds : ends of each parameter; unit: of distances in each, by default the length of its side"""
-        self.start, self.orbit, self.names = start, start.solution, names
+    def __init__(self, start: Start, names: tuple[str, ...], bounds, unit=None, step: float = 1.0):
+        """bounds : ends of each parameter; unit: of distances in each, by default the length of its side; step: of the
+        lengths of all steps, a factor"""
+        self.start, self.orbit, self.names, self.step_factor = start, start.solution, names, step
         self.bounds = np.array([*bounds, *[(-np.inf, np.inf)] * (2 - len(names))], float)
         self.unit = np.append(np.ptp(bounds, axis=1) if unit is None else unit, [1.0] * (2 - len(names)))
         s = self.orbit
@@ -63,7 +64,11 @@ class SolutionCurve:
         kinds, orbit = (kind, start.index, sides, rests), (float(s.sigma), count, self.unit, repeats, mirrors)
         self.problem = Problem(*kinds, *orbit, compliant_stops(q))
         self.workspace = new_workspace(K, self.n)
-        self.path = path.new_path(AT_ONCE, K, self.n, LONGEST_STEP, SHORTEST_STEP, STRAIGHT, self.bounds)
+        self.path = path.new_path(AT_ONCE, K, self.n, *self._limits(), self.bounds)
+
+    def _limits(self) -> tuple[float, float, float]:
+        """The longest and the shortest step, and the turn of the tangent in one."""
+        return self.step_factor * LONGEST_STEP, SHORTEST_STEP, self.step_factor * STRAIGHT
 
     def resized(self, K: int) -> "SolutionCurve":
         """The same curve with K impacts: without the last, or with more on the same stop."""
@@ -159,7 +164,7 @@ class SolutionCurve:
     def level(self, place: Place, axis: int, value: float) -> Point | None:
         """The point of the curve near `place` where the parameter `axis` (0, 1) has this value."""
         slope = self.problem.unit[axis] * place.tangent_p[axis]
-        if abs(value - place.p[axis]) > 2 * LONGEST_STEP * abs(slope):  # it turns back before
+        if abs(value - place.p[axis]) > 2 * self.step_factor * LONGEST_STEP * abs(slope):  # it turns back before
             return None
         guess = self.moved(place, (value - place.p[axis]) / slope if slope else 0.0)
         guess.p[axis] = value
@@ -303,9 +308,11 @@ class SolutionCurve:
         return np.where((R == 0) & ~rests, -sides * after, np.inf)
 
 
-def branch_through(solution: Solution, name: str, unit: float, bounds=(-np.inf, np.inf)) -> SolutionCurve:
+def branch_through(
+    solution: Solution, name: str, unit: float, bounds=(-np.inf, np.inf), step: float = 1.0
+) -> SolutionCurve:
     """The branch of an orbit in one parameter. Raises NoPlaneError, TooStiffError."""
-    return SolutionCurve(Start("orbit", solution), (name,), [bounds], [unit])
+    return SolutionCurve(Start("orbit", solution), (name,), [bounds], [unit], step)
 
 
 def copy(source: Place, target: Place) -> None:

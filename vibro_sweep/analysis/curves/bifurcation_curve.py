@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.sizes import check_width
+from vibro_sweep.analysis.branches.sizes import check_width, checked_step
 from vibro_sweep.analysis.branches.special import SpecialPoint, table_of
 from vibro_sweep.analysis.continuation.allowed_range import in_range
 from vibro_sweep.analysis.continuation.chatter import written_out
@@ -110,7 +110,7 @@ class BifurcationCurve(FileResult):
 
 @one_thread()
 def bifurcation_curve(
-    special: SpecialPoint, parameters: tuple[str, str], bounds, progress=None, virtual: bool = True
+    special: SpecialPoint, parameters: tuple[str, str], bounds, progress=None, virtual: bool = True, step: float = 1.0
 ) -> BifurcationCurve:
     """Follow a bifurcation in both directions in two parameters, numbers of its system.
 
@@ -119,6 +119,7 @@ def bifurcation_curve(
     progress(points, (p, q)) is called now and then.
     virtual : whether the curve goes on where its orbit is not a motion any more; otherwise it ends there, at a point of
         codimension two
+    step : of the lengths of steps, a factor: shorter ones give more points
 
     Raises ValueError for a special point of another type, names that are not numbers of the system, bounds that do not
     hold the point, where the point does not belong to a single curve, and without virtual points where there is no
@@ -150,11 +151,11 @@ def bifurcation_curve(
     system = special.orbit.system
     limits = [[in_range(system, name, end) for end in ends] for name, ends in zip(names, limits, strict=True)]
     check_call("progress", progress, "progress(points, (p, q))", 0, (0.0, 0.0))
-    virtual = checked_flag("virtual", virtual)
+    virtual, step = checked_flag("virtual", virtual), checked_step(step)
     start = start_at(special, names)
     for name, ends in zip(names, limits, strict=True):
         check_width(f"bounds.{name}", start.solution, name, *ends)
-    curve = SolutionCurve(start, names, limits)
+    curve = SolutionCurve(start, names, limits, step=step)
     curve, first = first_of(curve)
     if first is None:
         raise ArgumentError(f"special: this {special.type} cannot be followed; it may belong to several curves at once")

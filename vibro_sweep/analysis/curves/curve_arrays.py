@@ -7,7 +7,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.branch_arrays import Arrays, common, solution_of
+from vibro_sweep.analysis.branches.branch_arrays import common
+from vibro_sweep.analysis.branches.branch_orbits import Arrays, solution_of
 from vibro_sweep.analysis.branches.branch_run import stop_and_impact
 from vibro_sweep.analysis.branches.criticality import critical_angle
 from vibro_sweep.analysis.branches.special import bare

@@ -4,7 +4,8 @@ import math
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.branch_arrays import Arrays, section_states, solution_of
+from vibro_sweep.analysis.branches.branch_arrays import section_states
+from vibro_sweep.analysis.branches.branch_orbits import Arrays, solution_of
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import ALIKE, Solution, corrected
 from vibro_sweep.analysis.windows.job import are_near

@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.branch_arrays import Arrays, orbit_at, special_point
+from vibro_sweep.analysis.branches.branch_arrays import special_point
+from vibro_sweep.analysis.branches.branch_orbits import Arrays, orbit_at
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.periodic.itinerary import word
 from vibro_sweep.analysis.periodic.orbit_portrait import portrait
