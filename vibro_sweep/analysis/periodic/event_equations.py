@@ -76,12 +76,12 @@ class EventEquations:
             values = np.divide(over, under, out=np.full(n, np.inf, complex), where=finite)
         return values[np.lexsort((-values.imag, -np.abs(values)))]
 
-    def newton(self, starts, oscillators=()) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Newton's method from guesses (m, 2K) of times and jumps, without rests: solutions; the last change, NaN: none
-        found; and the states (m, K, 2N + 3) before the impacts. oscillators : of each guess, where contacts differ."""
+    def newton(self, starts, oscillators=()) -> tuple[np.ndarray, np.ndarray]:
+        """Newton's method from guesses (m, 2K) of times and jumps, without rests: solutions; and the last change, NaN:
+        none found. oscillators : of each guess, where contacts differ."""
         q, K, n = self.q, self.K, self.n
         if not K:
-            return starts, np.zeros(len(starts)), np.empty((len(starts), 0, n + 3))
+            return starts, np.zeros(len(starts))
         contacts = np.array([_contact_of(one) for one in oscillators or [q]])
         guesses = np.zeros((len(starts), K * (n + 2) + 1 + NUMBERS))
         x, guesses[:, -NUMBERS:] = guesses[:, : K * (n + 2)].reshape(len(starts), K, n + 2), contacts
@@ -89,7 +89,7 @@ class EventEquations:
         x[:, 0, 0] = contacts[:, HIGH if self.problem.sides[0] > 0 else LOW] - self.steady(x[:, 0, n])[:, 0]
         self.run_task(stepper.CONVERGE, guesses.reshape(-1))
         u = np.hstack([(x[..., n] - q.tau) / q.omega, x[..., n + 1] * q.omega])
-        return u, guesses[:, K * (n + 2)], self.whole(x[..., :n], x[..., n])
+        return u, guesses[:, K * (n + 2)]
 
     def steady(self, phases: np.ndarray) -> np.ndarray:
         """(.., 2N) the steady motion at these phases."""

@@ -114,7 +114,7 @@ def _seeded(start: Solution):
                 yield Solution(start.family, start.sigma, start.half_periods, start.sides, end, float(change))
 
     for first in range(0, SEEDS, AT_ONCE):
-        ends, changes, _ = e.newton(guesses[first : first + AT_ONCE])
+        ends, changes = e.newton(guesses[first : first + AT_ONCE])
         converged = np.isfinite(changes)
         ends, changes = ends[converged], changes[converged]
         ends[:, :K] -= np.floor(ends[:, :1] / T) * T

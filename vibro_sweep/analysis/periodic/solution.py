@@ -290,8 +290,6 @@ def corrected(solutions: list[Solution]) -> list[Solution | None]:
             continue
         guesses, oscillators = np.array([one.u for one in some]), [one.family.linear for one in some]
         found = EventEquations.of(some[0]).newton(guesses, oscillators)
-        for one, u, change, states in zip(some, *found, strict=True):
+        for one, u, change in zip(some, *found, strict=True):
             result.append(replace(one, u=u, change=float(change)) if np.isfinite(change) else None)
-            if result[-1] is not None:
-                result[-1].__dict__["states"] = states  # known from there
     return result
