@@ -34,7 +34,7 @@ def test_one_orbit_is_that_of_simulate(tmp_path):
     assert data["impacts_right"].shape == () and data["lyapunov"].shape == (4,)
     assert data["impacts_right"] == np.count_nonzero(late["side"] > 0) > 20
     assert data["impacts_left"] == np.count_nonzero(late["side"] < 0) > 20
-    assert data["min_impact_speed"] == abs(late["v1"]).min()
+    assert orbit.status.chatters and data["min_impact_speed"] == 0.0
     rests = np.clip(orbit.sticking["t_off"], begin, end) - np.clip(orbit.sticking["t_on"], begin, end)
     assert data["sticking_time"] == pytest.approx(rests.sum(), abs=1e-10) and rests.sum() > 10
     np.testing.assert_allclose(data["lyapunov"], vs.lyapunov(system, (0.1, 0, 0, 0.2), 30, 20))

@@ -128,7 +128,7 @@ def touches_of(law, o, result):
 def keep_record(e, w, plan, point, result, section, phase, running, o):
     """Keep the results of the record of an orbit."""
     result.impacts_right, result.impacts_left = o.impacts_right, o.impacts_left
-    result.min_impact_speed = o.slowest if o.slowest < np.inf else np.nan
+    result.min_impact_speed = 0.0 if o.chatters > 0 else o.slowest if o.slowest < np.inf else np.nan
     result.contact_error = o.miss if o.slowest < np.inf else np.nan
     result.sticking_time = o.rest_time
     states, growth, T = w.section[o.lane], w.growth[o.lane], period_of(e, o)

@@ -129,7 +129,8 @@ _OF_ANY = (
     ),
     Variable(
         "min_impact_speed", _IMPACTS, "smallest impact speed",
-        "smallest |v1| before an impact in the recorded periods; NaN without impacts", units="m s-1",
+        "smallest |v1| before an impact in the recorded periods; 0 where chatter ended in a rest; NaN without impacts",
+        units="m s-1",
     ),
     Variable(
         "contact_error", _IMPACTS, "contact error", "largest distance from the stop at which an impact was computed",

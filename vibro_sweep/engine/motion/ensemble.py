@@ -245,6 +245,8 @@ def finish_cells(e, waiting, free, struck, passed, readings):
     while struck != 0:
         o = e.orbits[lowest(struck)]
         f = flight_of(e, o)
+        if not passed >> o.lane & 1:
+            o.fastest = max(o.fastest, abs(e.strike[0].speed[o.lane]))
         finish_meeting(e.law, e, o, f, passed >> o.lane & 1, readings)
         struck &= struck - 1
         o.cell += 1

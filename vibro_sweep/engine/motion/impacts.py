@@ -69,7 +69,7 @@ def count_impact(o, side, v):
         o.impacts_right += 1
     else:
         o.impacts_left += 1
-    o.slowest = min(o.slowest, abs(v))
+    o.slowest, o.fastest = min(o.slowest, abs(v)), max(o.fastest, abs(v))
 
 
 @jit

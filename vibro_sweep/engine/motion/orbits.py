@@ -71,6 +71,7 @@ def orbit_of(masses: int, constant: bool = False) -> np.dtype:
         ("high", float),
         ("stops", float, 4),  # left, right, and the restitution of each
         ("resting", float),  # side of the stop that M1 rests on, or 0
+        ("fastest", float),  # largest |v1| before an impact since the start or the last rest
         ("c", float, (masses, ORDER)),  # Taylor coefficients of x1, x2, ...; of M1 at rest the free acceleration
         ("series_start", float, (width,)),  # what series begin with while M1 rests: x1, x2, v2, x3, ..., sin, cos
         ("gap", float, (ORDER,)),  # of the gap to a stop, or of the free acceleration at rest (contact.py)
@@ -122,7 +123,7 @@ def set_state(o, nodes, stops, cell, offset, state):
     for j in range(2 * len(o.c)):
         o.X[j] = state[j]
     o.stops[0], o.stops[1], o.stops[2], o.stops[3] = stops.left, stops.right, stops.R_left, stops.R_right
-    o.status, o.resting, o.cell, o.offset = status.OK, 0.0, cell, offset
+    o.status, o.resting, o.fastest, o.cell, o.offset = status.OK, 0.0, 0.0, cell, offset
     o.period = o.events = o.impacts_logged = o.rests_logged = o.samples_taken = 0
     begin_free_flight(o, nodes, row(o.X, 0))
     reset_counts(o)

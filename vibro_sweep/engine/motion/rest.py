@@ -13,6 +13,7 @@ from vibro_sweep.engine.tables.twofold import add
 from vibro_sweep.engine.variational import tangent_at_rest, tangent_flight
 
 CHATTER = 2.0**-53  # of a period: the error allowed in time when the rest of a chatter sequence is summed up
+FADED = 1e-7  # of the fastest impact of the sequence: heights and energies of slower ones are rounding
 
 
 @jit
@@ -41,7 +42,7 @@ def begin_rest(f, o, records, t, k, s, side, w):
     To tangent vectors the rest begins with the first of these: the sum of all that they do to dv2, ... is what the
     whole of dx1 does.
     """
-    o.X[1] = 0.0
+    o.X[1] = o.fastest = 0.0
     o.resting = side
     mark_rest(o, records, k, s, side)
     if t.wanted:
@@ -152,6 +153,7 @@ def stay_at_rest(f, o, records, t, k, s, sin, cos, most):
 @jit
 def chatter(q, stops, o, third, side, left):
     """Time in which the impacts to come accumulate, if they do so within the cell and can be summed up; else infinite.
+    They are summed up where no height and no energy that is shown is left to them: at `FADED` speeds.
 
     With the acceleration a into the stop, flights last 2 v/a, 2 R v/a, ..., in all 2 v/(a (1 - R)) =: w. The change
     of a within w makes an error of about w (third w/a). The first flight, v^2/(2 a) high, must not reach the other
@@ -159,7 +161,7 @@ def chatter(q, stops, o, third, side, left):
     """
     speed, a = -side * o.X[1], 2.0 * side * o.c[0, 2]
     R = restitution_of(stops, side)
-    if a <= 0.0 or R == 1.0:
+    if a <= 0.0 or R == 1.0 or speed > FADED * o.fastest:
         return np.inf
     w = 2.0 * speed / (a * (1.0 - R))
     change = third * w / a
