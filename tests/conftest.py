@@ -1,7 +1,9 @@
 """What holds for all tests."""
 
 import gc
+import logging
 import os
+import re
 import signal
 import sys
 from collections import Counter, defaultdict
@@ -43,9 +45,62 @@ FIRST = [
 ]
 
 
+EXPECTED_SKIPS = ("no chromium here", "no network namespace here", "cannot be mounted here")  # of a machine for tests
+
+
+class KernelLog(logging.Handler):
+    """Which test has compiled which kernel, in how many seconds."""
+
+    def __init__(self):
+        super().__init__(logging.INFO)
+        self.compiled: list[tuple[str, str, float]] = []
+
+    def emit(self, record: logging.LogRecord) -> None:
+        if isinstance(record.msg, str) and record.msg.startswith("compiled "):
+            test = os.environ.get("PYTEST_CURRENT_TEST", "collection").partition(" (")[0]
+            self.compiled.append((test, *record.args))
+
+
+KERNELS = KernelLog()
+
+
 def pytest_configure(config):
     """pytest-xdist takes the files in the order below, and not in one of its own."""
     config.option.loadscopereorder = False
+    logging.getLogger("vibro_sweep").addHandler(KERNELS)
+
+
+def pytest_sessionfinish(session):
+    """A worker of pytest-xdist hands its kernels on to the process that prints them. Under CI a skip that is not
+    expected fails."""
+    if hasattr(session.config, "workeroutput"):
+        session.config.workeroutput["kernels"] = KERNELS.compiled
+    elif os.environ.get("CI") and unexpected_skips(session.config):
+        session.exitstatus = pytest.ExitCode.TESTS_FAILED
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_testnodedown(node):
+    KERNELS.compiled += getattr(node, "workeroutput", {}).get("kernels", [])
+
+
+def pytest_terminal_summary(terminalreporter):
+    """The kernels that tests have compiled, and skips that are not expected."""
+    if KERNELS.compiled:
+        total = sum(kernel[2] for kernel in KERNELS.compiled)
+        terminalreporter.section(f"{len(KERNELS.compiled)} kernels compiled in {total:.0f} s")
+        for test, kernel, seconds in sorted(KERNELS.compiled, key=lambda kernel: -kernel[2]):
+            terminalreporter.write_line(f"{seconds:5.0f} s {kernel}, {test}")
+    for line in unexpected_skips(terminalreporter.config):
+        terminalreporter.write_line(line, red=True)
+
+
+def unexpected_skips(config) -> list[str]:
+    """Tests that were skipped for another reason than those of a machine without a browser or mounts."""
+    reporter = config.pluginmanager.get_plugin("terminalreporter")
+    skipped = [(report.nodeid, str(report.longrepr[-1])) for report in reporter.stats.get("skipped", [])]
+    expected = re.compile("|".join(EXPECTED_SKIPS))
+    return [f"not expected to be skipped: {test}: {why}" for test, why in skipped if not expected.search(why)]
 
 
 @pytest.hookimpl(wrapper=True, tryfirst=True)
