@@ -4,7 +4,6 @@ import contextlib
 import inspect
 import io
 import pydoc
-import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -233,4 +232,4 @@ def test_physical_system_from_numpy_numbers(kind):
 
 
 def test_py_typed_is_in_the_package():
-    assert (Path(vs.__file__).parent / "py.typed").exists() and shutil.which("vibro-sweep")
+    assert (Path(vs.__file__).parent / "py.typed").exists()
