@@ -5,7 +5,7 @@ import sys
 from golden import records
 from golden.checking import compared
 
-from tools.golden import making, sweeps
+from tools.golden import front, making, sweeps
 from tools.golden.table import table
 
 MADE = {  # kind -> its records, made now; in the order in which one kind needs another
@@ -13,6 +13,8 @@ MADE = {  # kind -> its records, made now; in the order in which one kind needs 
     "curves": lambda report: making.all_curves(list(records.read("branches").values()), report),
     "searches": making.all_searches,
     "windows": sweeps.all_windows,
+    "sweeps": front.all_sweeps,
+    "files": front.all_files,
 }
 
 

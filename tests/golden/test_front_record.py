@@ -1,0 +1,86 @@
+"""What users see is what it was in an earlier version: sweeps, files, figures and the live page (tests/data/golden)."""
+
+import copy
+
+import pytest
+
+from golden import checking, files, records, shown, sweeps
+from golden.scenes import computed
+
+CASES = {"sweeps": 25, "files": 15}
+FAST = {  # those that the fast tests compare
+    "sweeps": ("section alone, from a state", "followed up and down", "attractors of random starts"),
+    "files": ("sweep", "unfinished"),
+}
+
+
+def wrong(kind: str, chosen: dict) -> dict[str, list[str]]:
+    """What differs, by the names of records."""
+    differences = {name: checking.compared(kind, record) for name, record in chosen.items()}
+    return {name: lines for name, lines in differences.items() if lines}
+
+
+@pytest.mark.parametrize("kind", list(CASES))
+def test_some(kind):
+    stored = records.read(kind)
+    assert len(stored) == CASES[kind]
+    assert wrong(kind, {name: stored[name] for name in FAST[kind]}) == {}
+
+
+@pytest.mark.parametrize("kind", list(CASES))
+@pytest.mark.slow
+def test_all(kind):
+    assert wrong(kind, records.read(kind)) == {}
+
+
+CHANGED_SWEEPS = {
+    "a number": lambda data: data.assign(x1=data.x1 * (1 + 1e-9)),
+    "a count": lambda data: data.assign(impacts_right=data.impacts_right + 1),
+    "a type": lambda data: data.assign(period=data.period.astype("int32")),
+    "a dimension": lambda data: data.rename(sample="point"),
+    "a name": lambda data: data.rename(x1="x3"),
+    "no variable": lambda data: data.drop_vars("status"),
+    "a unit": lambda data: data.assign(x1=data.x1.assign_attrs(units="m")),
+    "a text of the file": lambda data: data.assign_attrs(stops="right"),
+    "a number of the file": lambda data: data.assign_attrs(R=0.81),
+    "less of the file": lambda data: data.drop_attrs(deep=False),
+}
+
+
+def test_the_comparison_of_sweeps_sees():
+    record = records.read("sweeps")["followed up and down"]
+    data = computed(record["scene"])
+    assert sweeps.compared(record["result"], data) == []
+    unseen = [name for name, change in CHANGED_SWEEPS.items() if not sweeps.compared(record["result"], change(data))]
+    assert unseen == []
+
+
+def test_the_comparison_of_what_is_shown_sees():
+    stored = {"text": "b = 1.25 +- 1e-13", "numbers": [1.0, 2.0, float("nan")], "count": 3, "names": ["x1", None, True]}
+    same = {
+        "text": "b = 1.2500001  +- 3e-14",
+        "numbers": [1.0, 2.000001, float("nan")],
+        "count": 3,
+        "names": stored["names"],
+    }
+    assert shown.different(stored, same) == []
+    for change in (
+        {"text": "b = 1.26 +- 1e-13"}, {"text": "c = 1.25 +- 1e-13"}, {"text": "b = 1.25"}, {"count": 4}, {"more": 1},
+        {"numbers": [1.0, 2.0, 2.0]}, {"numbers": [1.0, 2.0]}, {"numbers": [1.00001, 2.0, float("nan")]},
+        {"names": ["x1", None, False]}, {"names": ["x1", None, 1]},
+    ):  # fmt: skip
+        assert len(shown.different(stored, stored | change)) == 1, change
+
+
+def test_the_comparison_of_files_sees():
+    record = records.read("files")["sweep"]
+    kept = files.kept(record)
+    for part, change in (
+        ("layout", lambda layout: layout.pop("x1")), ("attrs", lambda attrs: attrs.update(R=0.7)),
+        ("opened", lambda opened: opened["x1"]["dims"].reverse()), ("attributes", lambda attrs: attrs.pop("stops")),
+    ):  # fmt: skip
+        changed = copy.deepcopy(kept)
+        change(changed[part])
+        assert shown.different(record["result"], changed), part
+    for part in ("info", "yaml"):
+        assert shown.different(record["result"], kept | {part: kept[part].replace("b", "c", 1)}), part

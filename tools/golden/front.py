@@ -1,0 +1,60 @@
+"""Makes the records of what users see: sweeps, files, figures and the live page."""
+
+from pathlib import Path
+
+import numpy as np
+import yaml
+from golden import files, records, scenes, sweeps
+from support.kinds_of_files import COMPLIANT, KINDS
+
+HERE = Path(__file__).parent
+RUNS = 4  # of each scene with other rounding
+SEARCH = """
+system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 6}
+continue: {from: {itinerary: LR}, parameter: {b: [2, 6.5]}, follow: [pitchfork, graze], depth: 1}
+"""
+PART = """
+system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8}
+sweep: {R: {values: [0.7, 0.8]}, b: {values: [6.5, 6.6, 6.7]}}
+orbit: {transient: 3, record: 4}
+observe: [section, lyapunov, impacts]
+"""
+
+
+def named(kind: str) -> list[dict]:
+    """The cases of a kind, by hand."""
+    return yaml.safe_load((HERE / f"{kind}.yaml").read_text())
+
+
+def all_sweeps(report) -> list[dict]:
+    return [_sweep(case, report) for case in named("scenes")]
+
+
+def _sweep(case: dict, report) -> dict:
+    text = yaml.safe_dump(case["scene"], sort_keys=False)
+    beside = [scenes.computed(other) for other in scenes.moved(text, RUNS)]
+    result = sweeps.result_of(scenes.computed(text), beside, np.random.default_rng(0))
+    kept = sum(len(one["at"]) for one in result["numbers"].values())
+    report(f"{case['name']}: {kept} numbers of {len(result['numbers'])} variables")
+    return {"name": case["name"], "scene": text, "result": result}
+
+
+def all_files(report) -> list[dict]:
+    cases = [
+        _case(name, f"{name}.h5", "windows" if kind.scene is None else "run", kind.scene, kind.source)
+        for name, kind in (KINDS | COMPLIANT).items()
+    ]
+    cases += [
+        _case("search", "search.h5", "run", SEARCH),
+        _case("unfinished", "unfinished.h5.part", "broken off", PART),
+    ]
+    cases += [_case(name, f"{name}.{'json' if 'orbit' in name else 'h5'}", "saved") for name in files.SAVED]
+    records.write("files", cases)  # those that others are made from
+    for case in cases:
+        case["result"] = files.kept(case)
+        report(f"{case['name']}: {case['file']}")
+    return cases
+
+
+def _case(name: str, file: str, made: str, scene: str | None = None, source: str = "") -> dict:
+    return {"name": name, "file": file, "made": made, "scene": scene, "source": source}
