@@ -1,11 +1,12 @@
 """A record compared with what is computed now."""
 
-from golden import branches, curves, files, searches, sweeps, windows
+from golden import branches, curves, figures, files, searches, sweeps, windows
 
 COMPARED = {  # kind -> what differs between a record and what is computed now, in words; nothing: []
     "branches": branches.differences_from,
     "curves": curves.differences_from,
     "files": files.differences_from,
+    "figures": figures.differences_from,
     "searches": searches.differences_from,
     "sweeps": sweeps.differences_from,
     "windows": windows.differences_from,

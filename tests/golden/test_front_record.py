@@ -4,13 +4,24 @@ import copy
 
 import pytest
 
-from golden import checking, files, records, shown, sweeps
+from golden import checking, figures, files, records, shown, sweeps
+from golden.drawn import described
 from golden.scenes import computed
 
-CASES = {"sweeps": 25, "files": 15}
+CASES = {"sweeps": 25, "files": 15, "figures": 91}
 FAST = {  # those that the fast tests compare
     "sweeps": ("section alone, from a state", "followed up and down", "attractors of random starts"),
     "files": ("sweep", "unfinished"),
+    "figures": (
+        'vs.plot(data["sweep"])',
+        'vs.plot(data["attractors"])',
+        'vs.plot(data["basins"])',
+        'vs.plot(data["plane"])',
+        'vs.plot(data["orbits"], "history")',
+        'vs.plot(data["contacts"], "contact-force", at=dict(b=0.6))',
+        'vs.plot(data["units"])',
+        'vs.plot(data["file sweep"], windows=data["file windows"])',
+    ),
 }
 
 
@@ -84,3 +95,26 @@ def test_the_comparison_of_files_sees():
         assert shown.different(record["result"], changed), part
     for part in ("info", "yaml"):
         assert shown.different(record["result"], kept | {part: kept[part].replace("b", "c", 1)}), part
+
+
+CHANGED_FIGURES = {
+    "a label": lambda ax: ax.set_xlabel("x"),
+    "a limit": lambda ax: ax.set_xlim(4.9, 7),
+    "a scale": lambda ax: ax.set_yscale("symlog"),
+    "ticks": lambda ax: ax.set_xticks([5, 6]),
+    "a text": lambda ax: ax.text(5, 5, "text"),
+    "a line more": lambda ax: ax.plot([5, 6], [1, 2]),
+    "a line less": lambda ax: ax.lines[0].remove(),
+    "a colour": lambda ax: ax.lines[0].set_color("red"),
+    "numbers": lambda ax: ax.lines[0].set_ydata(ax.lines[0].get_ydata() * 1.0001),
+    "a legend": lambda ax: ax.legend(["a line"]),
+    "a title": lambda ax: ax.figure.suptitle("title"),
+}
+
+
+def test_the_comparison_of_figures_sees():
+    record = records.read("figures")['vs.plot(data["sweep"])']
+    for name, change in CHANGED_FIGURES.items():
+        figure = figures.figure_of(record)
+        change(figure.axes[0])
+        assert shown.different(record["result"], [described(figure)]), name

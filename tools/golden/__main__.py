@@ -3,7 +3,7 @@
 import sys
 
 from golden import records
-from golden.checking import compared
+from golden.checking import COMPARED, compared
 
 from tools.golden import front, making, sweeps
 from tools.golden.table import table
@@ -15,6 +15,8 @@ MADE = {  # kind -> its records, made now; in the order in which one kind needs 
     "windows": sweeps.all_windows,
     "sweeps": front.all_sweeps,
     "files": front.all_files,
+    "figure_data": front.all_figure_data,
+    "figures": front.all_figures,
 }
 
 
@@ -37,6 +39,6 @@ def check(kinds) -> None:
 
 if __name__ == "__main__":
     if sys.argv[1:2] == ["check"]:
-        check(sys.argv[2:] or MADE)
+        check(sys.argv[2:] or COMPARED)
     else:
         make(sys.argv[1:] or MADE)

@@ -4,10 +4,13 @@ from pathlib import Path
 
 import numpy as np
 import yaml
-from golden import files, records, scenes, sweeps
+from golden import datasets, figures, files, records, scenes, sweeps
 from support.kinds_of_files import COMPLIANT, KINDS
 
+import vibro_sweep as vs
+
 HERE = Path(__file__).parent
+DRAWN_FILES = ("sweep", "windows", "branches", "curves", "search")
 RUNS = 4  # of each scene with other rounding
 SEARCH = """
 system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 6}
@@ -58,3 +61,29 @@ def all_files(report) -> list[dict]:
 
 def _case(name: str, file: str, made: str, scene: str | None = None, source: str = "") -> dict:
     return {"name": name, "file": file, "made": made, "scene": scene, "source": source}
+
+
+def all_figure_data(report) -> list[dict]:
+    """What is drawn: Datasets of scenes, and of the files of the kind `files`."""
+    cases = {case["name"]: scenes.computed(yaml.safe_dump(case["scene"])) for case in named("figure_data")}
+    for name, record in records.read("files").items():
+        if name in DRAWN_FILES:
+            with vs.open(files.file_of(record)) as data:
+                cases[f"file {name}"] = data.load()
+    report(f"{len(cases)} Datasets")
+    return [{"name": name} | datasets.record_of(data) for name, data in cases.items()]
+
+
+def all_figures(report) -> list[dict]:
+    written = named("figures")
+    cases = [{"name": call, "call": call} for call in written["of data"] + written["of results"]]
+    cases += [{"name": call, "call": call, "arrays": False} for call in written["without arrays"]]
+    cases += [{"name": f"plot {case['file']} {case['command']}".strip()} | case for case in written["by command"]]
+    done = []
+    for case in cases:
+        try:
+            done.append(case | {"result": figures.result_of(case)})
+        except Exception as error:
+            report(f"# {case['name']}: {error}")
+    report(f"{len(done)} figures")
+    return done
