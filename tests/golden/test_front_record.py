@@ -4,11 +4,11 @@ import copy
 
 import pytest
 
-from golden import checking, figures, files, records, shown, sweeps
+from golden import answers, checking, figures, files, records, shown, sweeps
 from golden.drawn import described
 from golden.scenes import computed
 
-CASES = {"sweeps": 25, "files": 15, "figures": 91}
+CASES = {"sweeps": 25, "files": 15, "figures": 91, "answers": 21}
 FAST = {  # those that the fast tests compare
     "sweeps": ("section alone, from a state", "followed up and down", "attractors of random starts"),
     "files": ("sweep", "unfinished"),
@@ -22,6 +22,7 @@ FAST = {  # those that the fast tests compare
         'vs.plot(data["units"])',
         'vs.plot(data["file sweep"], windows=data["file windows"])',
     ),
+    "answers": ("a page", "a diagram", "a saved scene", "what cannot be computed"),
 }
 
 
@@ -118,3 +119,11 @@ def test_the_comparison_of_figures_sees():
         figure = figures.figure_of(record)
         change(figure.axes[0])
         assert shown.different(record["result"], [described(figure)]), name
+
+
+def test_the_comparison_of_answers_sees():
+    record = records.read("answers")["a diagram"]
+    for change in ({"columns": 11}, {"transient": 9}, {"y": "v1"}, {"numbers": {"R": 0.80001}}):
+        (request,) = record["requests"]
+        case = record | {"requests": [request | {"view": request["view"] | change}]}
+        assert shown.different(record["result"], answers.result_of(case)), change

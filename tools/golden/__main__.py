@@ -17,6 +17,7 @@ MADE = {  # kind -> its records, made now; in the order in which one kind needs 
     "files": front.all_files,
     "figure_data": front.all_figure_data,
     "figures": front.all_figures,
+    "answers": front.all_answers,
 }
 
 

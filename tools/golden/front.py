@@ -1,10 +1,11 @@
 """Makes the records of what users see: sweeps, files, figures and the live page."""
 
+import math
 from pathlib import Path
 
 import numpy as np
 import yaml
-from golden import datasets, figures, files, records, scenes, sweeps
+from golden import answers, datasets, figures, files, records, scenes, shown, sweeps
 from support.kinds_of_files import COMPLIANT, KINDS
 
 import vibro_sweep as vs
@@ -87,3 +88,25 @@ def all_figures(report) -> list[dict]:
             report(f"# {case['name']}: {error}")
     report(f"{len(done)} figures")
     return done
+
+
+def all_answers(report) -> list[dict]:
+    """Says which answers are decided by rounding: these are no cases."""
+    done = []
+    for case in named("answers"):
+        report(case["name"])
+        case["result"] = answers.result_of(case)
+        done.append(case)
+        for line in _by_rounding(case):
+            report(f"# {case['name']}: {line}")
+    report(f"{len(done)} answers")
+    return done
+
+
+def _by_rounding(case: dict) -> list[str]:
+    """What differs with another rounding of the damping."""
+    if case["requests"][-1]["type"] not in ("sweep", "orbit", "window"):
+        return []
+    zeta = 0.05 if case["page"] == "paper" else 0.02
+    moved = answers.result_of(case, {"zeta": math.nextafter(zeta, math.inf)})
+    return shown.different(case["result"], moved)
