@@ -1,6 +1,6 @@
 """A record compared with what is computed now."""
 
-from golden import answers, branches, curves, figures, files, searches, sweeps, windows
+from golden import answers, branches, contact_windows, curves, figures, files, searches, sweeps, windows
 
 COMPARED = {  # kind -> what differs between a record and what is computed now, in words; nothing: []
     "branches": branches.differences_from,
@@ -9,6 +9,7 @@ COMPARED = {  # kind -> what differs between a record and what is computed now, 
     "figures": figures.differences_from,
     "searches": searches.differences_from,
     "sweeps": sweeps.differences_from,
+    "contact_windows": contact_windows.differences_from,
     "answers": answers.differences_from,
     "windows": windows.differences_from,
 }

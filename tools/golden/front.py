@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import yaml
-from golden import answers, datasets, figures, files, records, scenes, shown, sweeps
+from golden import answers, contact_windows, datasets, figures, files, records, scenes, shown, sweeps, windows
 from support.kinds_of_files import COMPLIANT, KINDS
 
 import vibro_sweep as vs
@@ -41,6 +41,18 @@ def _sweep(case: dict, report) -> dict:
     kept = sum(len(one["at"]) for one in result["numbers"].values())
     report(f"{case['name']}: {kept} numbers of {len(result['numbers'])} variables")
     return {"name": case["name"], "scene": text, "result": result}
+
+
+def all_contact_windows(report) -> list[dict]:
+    return [_windows(case, report) for case in named("contact_windows")]
+
+
+def _windows(case: dict, report) -> dict:
+    text, name = yaml.safe_dump(case["scene"], sort_keys=False), case["parameter"]
+    values, result = case["scene"]["sweep"][name], windows.result_of(contact_windows.windows_in(text))
+    report(f"{case['name']}: {len(result['windows'])} windows")
+    bounds = [values["start"], values["stop"]]
+    return {"name": case["name"], "scene": text, "parameter": name, "bounds": bounds, "result": result}
 
 
 def all_files(report) -> list[dict]:
@@ -80,23 +92,14 @@ def all_figures(report) -> list[dict]:
     cases = [{"name": call, "call": call} for call in written["of data"] + written["of results"]]
     cases += [{"name": call, "call": call, "arrays": False} for call in written["without arrays"]]
     cases += [{"name": f"plot {case['file']} {case['command']}".strip()} | case for case in written["by command"]]
-    done = []
-    for case in cases:
-        try:
-            done.append(case | {"result": figures.result_of(case)})
-        except Exception as error:
-            report(f"# {case['name']}: {error}")
-    report(f"{len(done)} figures")
-    return done
+    report(f"{len(cases)} figures")
+    return [case | {"result": figures.result_of(case)} for case in cases]
 
 
 def all_answers(report) -> list[dict]:
     """Says which answers are decided by rounding: these are no cases."""
-    done = []
-    for case in named("answers"):
-        report(case["name"])
-        case["result"] = answers.result_of(case)
-        done.append(case)
+    done = [case | {"result": answers.result_of(case)} for case in named("answers")]
+    for case in done:
         for line in _by_rounding(case):
             report(f"# {case['name']}: {line}")
     report(f"{len(done)} answers")
