@@ -12,10 +12,10 @@ def record_of(data) -> dict:
     return {
         "coordinates": list(data.coords), "attrs": {name: _plain(value) for name, value in data.attrs.items()},
         "variables": {
-            name: {key: form(getattr(one, key)) for key, form in names.items()}
-            | {"attrs": {key: _plain(value) for key, value in one.attrs.items()}, "shape": list(one.shape)}
-            | {"values": _digits(one.values.ravel())}
-            for name, one in data.variables.items()
+            name: {key: form(getattr(variable, key)) for key, form in names.items()}
+            | {"attrs": {key: _plain(value) for key, value in variable.attrs.items()}, "shape": list(variable.shape)}
+            | {"values": _digits(variable.values.ravel())}
+            for name, variable in data.variables.items()
         },
     }  # fmt: skip
 
@@ -23,8 +23,12 @@ def record_of(data) -> dict:
 def dataset_of(record: dict):
     """The Dataset of a record."""
     variables = {
-        name: (one["dims"], np.array(one["values"], one["dtype"]).reshape(one["shape"]), one["attrs"])
-        for name, one in record["variables"].items()
+        name: (
+            variable["dims"],
+            np.array(variable["values"], variable["dtype"]).reshape(variable["shape"]),
+            variable["attrs"],
+        )
+        for name, variable in record["variables"].items()
     }
     return xr.Dataset(variables, attrs=record["attrs"]).set_coords(record["coordinates"])
 

@@ -14,7 +14,7 @@ def described(figure) -> dict:
         "dpi": float(figure.dpi),
         "title": figure.get_suptitle(),
         "texts": [text.get_text() for text in figure.texts],
-        "legends": [_legend(one) for one in figure.legends],
+        "legends": [_legend(legend) for legend in figure.legends],
         "axes": [_axes(ax) for ax in figure.axes],
     }
 
@@ -34,7 +34,7 @@ def _axes(ax) -> dict:
     }
     for name, describe in (("lines", _line), ("collections", _collection), ("patches", _patch), ("images", _image)):
         artists = list(getattr(ax, name))
-        result[name] = {"count": len(artists), "first": [describe(one) for one in artists[:LISTED]]}
+        result[name] = {"count": len(artists), "first": [describe(artist) for artist in artists[:LISTED]]}
     return result
 
 
@@ -61,14 +61,14 @@ def _line(line) -> dict:
     }  # fmt: skip
 
 
-def _collection(one) -> dict:
-    paths = [path.vertices for path in one.get_paths()]
-    values = one.get_array()
+def _collection(artist) -> dict:
+    paths = [path.vertices for path in artist.get_paths()]
+    values = artist.get_array()
     return {
-        "class": type(one).__name__, "label": _label(one), "paths": len(paths),
-        "vertices": array(np.concatenate(paths) if paths else []), "offsets": array(one.get_offsets()),
-        "values": None if values is None else array(values), "colours": _colours(one.get_facecolor()),
-        "edges": _colours(one.get_edgecolor()),
+        "class": type(artist).__name__, "label": _label(artist), "paths": len(paths),
+        "vertices": array(np.concatenate(paths) if paths else []), "offsets": array(artist.get_offsets()),
+        "values": None if values is None else array(values), "colours": _colours(artist.get_facecolor()),
+        "edges": _colours(artist.get_edgecolor()),
     }  # fmt: skip
 
 
@@ -96,7 +96,7 @@ def _label(artist) -> str:
 
 def _colours(colours) -> list[str]:
     """Each once, in their order."""
-    return list(dict.fromkeys(to_hex(one, keep_alpha=True) for one in colours))
+    return list(dict.fromkeys(to_hex(colour, keep_alpha=True) for colour in colours))
 
 
 def array(values) -> dict:
@@ -104,19 +104,19 @@ def array(values) -> dict:
     values = np.ma.filled(np.ma.asarray(values, float), np.nan)
     flat = values.ravel()
     finite = flat[np.isfinite(flat)]
-    some = flat[np.unique(np.linspace(0, max(len(flat) - 1, 0), VALUES).astype(int))] if len(flat) else flat
+    chosen = flat[np.unique(np.linspace(0, max(len(flat) - 1, 0), VALUES).astype(int))] if len(flat) else flat
     bounds = [float(finite.min()), float(finite.max())] if len(finite) else []
     return {
         "shape": list(values.shape), "missing": len(flat) - len(finite), "bounds": bounds,
-        "values": [_number(value) for value in some],
+        "values": [_number(value) for value in chosen],
     }  # fmt: skip
 
 
 def without_arrays(value):
     """A description of which only words, limits and counts are kept."""
     if isinstance(value, dict):
-        return {key: without_arrays(one) for key, one in value.items() if not _is_array(one)}
-    return [without_arrays(one) for one in value] if isinstance(value, list) else value
+        return {key: without_arrays(inner) for key, inner in value.items() if not _is_array(inner)}
+    return [without_arrays(inner) for inner in value] if isinstance(value, list) else value
 
 
 def _is_array(value) -> bool:

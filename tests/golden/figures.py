@@ -51,7 +51,7 @@ def _by_command(case: dict) -> list[Figure]:
         return save(self, *arguments, **options)
 
     words = [f"{case['file']}.h5", *case["command"].split()]
-    files = [file_of(one) for one in records.read("files").values() if one["file"] in words]
+    files = [file_of(record) for record in records.read("files").values() if record["file"] in words]
     with patch.object(Figure, "savefig", savefig), chdir(files[0].parent):
         status, _, errors = called("plot", *words, "--output", "picture.svg", "--overwrite")
     if status or not figures:

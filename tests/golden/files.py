@@ -35,18 +35,18 @@ class BrokenOff(Exception):  # noqa: N818
     pass
 
 
-def one_branch():
+def symmetric_branch():
     return vs.continue_orbit(vs.periodic_orbit(PAPER, itinerary="LR"), "b", (2, 6.5))
 
 
-def one_curve():
-    point = next(one for one in one_branch().special if one.type == "pitchfork")
+def pitchfork_curve():
+    point = next(special for special in symmetric_branch().special if special.type == "pitchfork")
     return vs.bifurcation_curve(point, ("b", "omega"), ((2, 6.5), (0.62, 0.64)))
 
 
 SAVED = {  # what `.save` writes
-    "one branch": one_branch,
-    "one curve": one_curve,
+    "one branch": symmetric_branch,
+    "one curve": pitchfork_curve,
     "periodic orbit": lambda: vs.periodic_orbit(PAPER.replace(b=1), itinerary="LLRR"),
 }
 
@@ -114,14 +114,15 @@ def result_of(path: Path) -> dict:
             result["attrs"] = _attributes(file)
     with vs.open(path) as data:
         result["opened"] = {
-            name: {"dims": list(one.dims), "dtype": str(one.dtype), "coordinate": name in data.coords}
-            for name, one in data.variables.items()
+            name: {"dims": list(variable.dims), "dtype": str(variable.dtype), "coordinate": name in data.coords}
+            for name, variable in data.variables.items()
         }
         result["attributes"] = {key: _plain(value) for key, value in data.attrs.items() if key not in OF_THE_RUN}
         result["yaml"] = _written_again(data.attrs["scene"], path)
         if data.attrs["kind"] != "sweep":
             loaded = vs.load(path)
-            result["loaded"] = [_loaded(one) for one in ([loaded] if hasattr(loaded, "to_dataframe") else loaded)]
+            results = [loaded] if hasattr(loaded, "to_dataframe") else loaded
+            result["loaded"] = [_loaded(single) for single in results]
     return result
 
 
@@ -184,7 +185,7 @@ def _plain(value):
     if isinstance(value, (np.ndarray, np.generic)):
         return _plain(value.tolist())
     if isinstance(value, (list, tuple)):
-        return [_plain(one) for one in value]
+        return [_plain(inner) for inner in value]
     if isinstance(value, bytes):
         return value.decode()
     return None if value != value else value  # tables have NaN and None in the same place

@@ -33,15 +33,15 @@ def result_of(data, beside, rng) -> dict:
     for name, values in numbers.items():
         flat = values.ravel()
         if name in allowed:
-            some = np.flatnonzero(_certain(values, allowed[name]).ravel())
-            some = np.sort(rng.permutation(some)[:KEPT])
-            more = {"allowed": [float(f"{a:.1e}") for a in allowed[name].ravel()[some]]}
+            chosen = np.flatnonzero(_certain(values, allowed[name]).ravel())
+            chosen = np.sort(rng.permutation(chosen)[:KEPT])
+            more = {"allowed": [float(f"{a:.1e}") for a in allowed[name].ravel()[chosen]]}
         else:
             same = np.all([values == other[name] for other in others], axis=0)
             if name in data.variables and name not in SETTLED_OR_NOT:
                 same &= ~_spread(unsettled, data, name)
-            some, more = np.sort(rng.permutation(np.flatnonzero(same))[:COUNTS]), {}
-        result["numbers"][name] = {"at": some.tolist(), "values": flat[some].tolist()} | more
+            chosen, more = np.sort(rng.permutation(np.flatnonzero(same))[:COUNTS]), {}
+        result["numbers"][name] = {"at": chosen.tolist(), "values": flat[chosen].tolist()} | more
     return result
 
 
@@ -49,10 +49,10 @@ def form_of(data) -> dict:
     """Names, dimensions, types and texts."""
     variables = {
         name: {
-            "dims": list(one.dims), "shape": list(one.shape), "dtype": str(one.dtype),
-            "attrs": {key: _plain(value) for key, value in one.attrs.items()},
+            "dims": list(variable.dims), "shape": list(variable.shape), "dtype": str(variable.dtype),
+            "attrs": {key: _plain(value) for key, value in variable.attrs.items()},
         }
-        for name, one in data.variables.items()
+        for name, variable in data.variables.items()
     }  # fmt: skip
     texts = {
         key: _plain(value)
@@ -65,7 +65,7 @@ def form_of(data) -> dict:
 def numbers_of(data) -> dict[str, np.ndarray]:
     """All variables, and the attributes that are real numbers."""
     attributes = {name: np.asarray(value) for name, value in data.attrs.items() if name not in OF_THE_RUN}
-    return {name: one.values for name, one in data.variables.items()} | {
+    return {name: variable.values for name, variable in data.variables.items()} | {
         f"attribute {name}": value for name, value in attributes.items() if _is_real(value)
     }
 
@@ -104,7 +104,7 @@ def _allowances(name: str, values, others) -> np.ndarray:
     """How far numbers may move; of what is NaN or infinite 0, infinity where other rounding makes it a number."""
     scale = OF_ERRORS if name.endswith(("_error", "_residual")) else None
     finite = np.isfinite([values, *others])
-    numbers = [np.where(one, number, 0.0) for one, number in zip(finite, (values, *others), strict=True)]
+    numbers = [np.where(is_number, number, 0.0) for is_number, number in zip(finite, (values, *others), strict=True)]
     allowed = units.allowances(numbers[0], numbers[1:], scale)
     return np.where(finite.all(axis=0), allowed, np.where(finite.any(axis=0), np.inf, 0.0))
 

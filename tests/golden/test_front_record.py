@@ -71,18 +71,14 @@ def test_the_comparison_of_sweeps_sees():
 
 
 def test_the_comparison_of_what_is_shown_sees():
-    stored = {"text": "b = 1.25 +- 1e-13", "numbers": [1.0, 2.0, float("nan")], "count": 3, "names": ["x1", None, True]}
-    same = {
-        "text": "b = 1.2500001  +- 3e-14",
-        "numbers": [1.0, 2.000001, float("nan")],
-        "count": 3,
-        "names": stored["names"],
-    }
-    assert shown.different(stored, same) == []
+    stored = {"text": "b = 1.25 +- 1e-13", "numbers": [1.0, 2.0, None], "count": 3, "names": ["x1", None, True]}
+    stored |= {"colour": "#0e0011ff"}
+    same = {"text": "b = 1.2500001  +- 3e-14", "numbers": [1.0, 2.000001, None]}
+    assert shown.different(stored, stored | same) == []
     for change in (
         {"text": "b = 1.26 +- 1e-13"}, {"text": "c = 1.25 +- 1e-13"}, {"text": "b = 1.25"}, {"count": 4}, {"more": 1},
-        {"numbers": [1.0, 2.0, 2.0]}, {"numbers": [1.0, 2.0]}, {"numbers": [1.00001, 2.0, float("nan")]},
-        {"names": ["x1", None, False]}, {"names": ["x1", None, 1]},
+        {"numbers": [1.0, 2.0, 2.0]}, {"numbers": [1.0, 2.0]}, {"numbers": [1.00001, 2.0, None]},
+        {"names": ["x1", None, False]}, {"names": ["x1", None, 1]}, {"colour": "#0e0012ff"},
     ):  # fmt: skip
         assert len(shown.different(stored, stored | change)) == 1, change
 

@@ -38,7 +38,7 @@ def _sweep(case: dict, report) -> dict:
     text = yaml.safe_dump(case["scene"], sort_keys=False)
     beside = [scenes.computed(other) for other in scenes.moved(text, RUNS)]
     result = sweeps.result_of(scenes.computed(text), beside, np.random.default_rng(0))
-    kept = sum(len(one["at"]) for one in result["numbers"].values())
+    kept = sum(len(numbers["at"]) for numbers in result["numbers"].values())
     report(f"{case['name']}: {kept} numbers of {len(result['numbers'])} variables")
     return {"name": case["name"], "scene": text, "result": result}
 
