@@ -12,6 +12,7 @@ RENAMED = {  # since the record was made
     '"along":': '"contact_normal":',
     '"unseen":': '"unvisited":',
     '"missed":': '"other_attractor":',
+    "recorded periods; NaN without impacts": "recorded periods; 0 where chatter ended in a rest; NaN without impacts",
 }
 
 
