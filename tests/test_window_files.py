@@ -126,6 +126,13 @@ def test_windows_are_found_without_xarray(few):  # noqa: F811
 
 
 @pytest.mark.slow
+def test_windows_are_not_drawn_over_a_sweep(few, file):  # noqa: F811
+    """The sweep is drawn, with the windows; the other way round was an internal error."""
+    with pytest.raises(vs.PlotError, match="draw the sweep, with these windows"):
+        vs.plot(file, over=few)
+
+
+@pytest.mark.slow
 def test_commands(few, tmp_path, monkeypatch, capsys):  # noqa: F811
     monkeypatch.chdir(tmp_path)
     before = few.read_bytes()

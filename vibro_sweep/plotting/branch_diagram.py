@@ -34,6 +34,8 @@ def branches(path, options: PlotOptions, ax=None):
         raise PlotError(f"variable {shown(name)} is not allowed; there are {', '.join(variables(file))}")
     if not len(file["branch_period"]):
         raise PlotError(f"{file.name}: nothing to show, it has no branches")
+    if options.over is not None and "branch_sections" not in file.arrays:
+        raise PlotError(f"{file.name}: a file of windows is not drawn over a sweep; draw the sweep, with these windows")
     fig = None
     if ax is None:
         fig = options.page(5.0, f"Branches of periodic orbits: {file.title}")
