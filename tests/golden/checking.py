@@ -1,6 +1,19 @@
 """A record compared with what is computed now."""
 
-from golden import answers, branches, contact_windows, curves, figures, files, searches, sweeps, windows
+from golden import (
+    answers,
+    branches,
+    contact_windows,
+    curves,
+    exponents,
+    figures,
+    files,
+    maps,
+    searches,
+    simulations,
+    sweeps,
+    windows,
+)
 
 COMPARED = {  # kind -> what differs between a record and what is computed now, in words; nothing: []
     "branches": branches.differences_from,
@@ -12,6 +25,9 @@ COMPARED = {  # kind -> what differs between a record and what is computed now, 
     "contact_windows": contact_windows.differences_from,
     "answers": answers.differences_from,
     "windows": windows.differences_from,
+    "simulations": simulations.differences_from,
+    "exponents": exponents.differences_from,
+    "maps": maps.differences_from,
 }
 
 

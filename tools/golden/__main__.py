@@ -5,7 +5,7 @@ import sys
 from golden import records
 from golden.checking import COMPARED, compared
 
-from tools.golden import front, making, sweeps
+from tools.golden import front, making, simulated, sweeps
 from tools.golden.table import table
 
 MADE = {  # kind -> its records, made now; in the order in which one kind needs another
@@ -19,6 +19,9 @@ MADE = {  # kind -> its records, made now; in the order in which one kind needs 
     "figure_data": front.all_figure_data,
     "figures": front.all_figures,
     "answers": front.all_answers,
+    "simulations": simulated.all_simulations,
+    "exponents": lambda report: simulated.all_exponents(list(records.read("simulations").values()), report),
+    "maps": simulated.all_maps,
 }
 
 

@@ -6,8 +6,9 @@ from golden import records
 from golden.motions import system_of
 
 import vibro_sweep as vs
+from tools.golden import table_of_simulations
 
-KINDS = ("branches", "curves", "searches", "windows")  # of which the table tells
+KINDS = ("branches", "curves", "searches", "windows", *table_of_simulations.KINDS)  # of which the table tells
 
 
 def table() -> str:
@@ -17,6 +18,8 @@ def table() -> str:
 
 
 def _of_kind(kind: str, records: list[dict]) -> str:
+    if kind in table_of_simulations.KINDS:
+        return table_of_simulations.described(kind, records)
     results = [part for one in records for part in _parts(kind, one["result"])]
     orbits = [one.get("orbit", one) for one in results]
     counted = {
