@@ -45,11 +45,10 @@ def with_inputs(record: dict, inputs: dict) -> dict:
 
 def differences(stored: dict, words: dict, tables: dict[str, Table]) -> list[str]:
     """Between what a record has and what is computed now, in words; none: []."""
-    lines = [
-        f"{name}: {was!r}, now {words[name]!r}" for name, was in stored["words"].items() if words[name] != was
-    ]  # fmt: skip
+    changed = [name for name, was in stored["words"].items() if words[name] != was]
+    lines = [f"{name}: {stored['words'][name]!r}, now {words[name]!r}" for name in changed]
     for name, kept in stored["tables"].items():
-        lines += _of_table(name, kept, tables[name].rows)
+        lines += _of_table(name, kept, tables[name].rows) if name in tables else [f"{name}: none now"]
     return lines
 
 

@@ -128,6 +128,14 @@ def whole(stored: dict, name: str) -> bool:
     return stored["tables"][name]["whole"] and len(stored["tables"][name]["rows"]) > 0
 
 
+def test_a_table_that_is_missing_is_seen():
+    """As `samples` of an orbit that fails."""
+    stored = record_with("samples")["result"]
+    tables = as_computed(stored)
+    del tables["samples"]
+    assert kept_numbers.differences(stored, stored["words"], tables) == ["samples: none now"]
+
+
 def test_other_words_are_seen():
     stored = record_with("impacts")["result"]
     assert stored["words"] == {"status": "ok", "chatters": 0}

@@ -2,7 +2,8 @@
 
 Up to three masses all cases were computed for a processor without AVX-512 (NUMBA_CPU_NAME=haswell,
 NUMBA_CPU_FEATURES= and OPENBLAS_CORETYPE=Haswell), where nothing differed, and without fused multiply-adds as well
-(NUMBA_CPU_FEATURES=-fma), where these did. Run with a NUMBA_CACHE_DIR of its own, `python -m tools.golden check` shows it.
+(NUMBA_CPU_FEATURES=-fma), where these did. `python -m tools.golden check` compares so; kernels of another processor
+need a NUMBA_CACHE_DIR of their own.
 """
 
 FUSED = "without fused multiply-adds they lie up to 1e-11 of their size elsewhere"
