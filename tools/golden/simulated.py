@@ -19,7 +19,7 @@ ROWS = {
     "impacts": 30, "states at impacts": 8, "contacts": 30, "rests": 10, "section": 7, "samples": 7,
     "exponents": 16, "residual": 1, "graze": 1, "states": 3, "jacobians": 48,
 }  # fmt: skip
-MOVES = {"simulations": 6, "exponents": 6, "maps": 100}  # of numbers of an oscillator; maps take no time
+MOVES = {"simulations": 300, "exponents": 6, "maps": 300}  # of numbers of an oscillator; 300 are all of them
 EXPONENTS = (60, 40), (8, 12), (2, 4), (0, 2)  # periods before and of the record; fewer where the orbit is chaotic
 
 
