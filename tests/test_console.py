@@ -225,13 +225,6 @@ def test_a_long_run_is_announced(folder, capsys, monkeypatch):
     assert capsys.readouterr().err == ""
 
 
-@pytest.mark.parametrize("workers", ["99999999999999999999", "1025", "-1", "1.5", "\u0663" * 30])
-def test_workers_that_cannot_be(folder, capsys, workers):
-    assert main(["run", "good.yaml", f"--workers={workers}"]) == 2
-    assert "whole number >= 1 and <= 1024" in " ".join(capsys.readouterr().err.split())
-    assert [path.name for path in folder.iterdir()] == ["good.yaml"]
-
-
 @pytest.mark.slow
 def test_a_scene_whose_name_is_no_text(folder):
     os.rename(b"good.yaml", b"\xff\xfe.yaml")

@@ -9,8 +9,8 @@ from support import ROOT
 
 from vibro_sweep.model.oscillator import System
 from vibro_sweep.model.parameters import BY_NAME, OTHER_STOPS, ParameterError, check_value
-from vibro_sweep.scene import SceneError, json_schema, load_scene, parse_scene
-from vibro_sweep.scene.yaml_text import YAMLTextError, read_yaml
+from vibro_sweep.scene import json_schema, load_scene, parse_scene
+from vibro_sweep.scene.yaml_text import read_yaml
 
 CONFIGS = ROOT / "configs"
 NUMBERS = dict(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=6.6)
@@ -52,27 +52,6 @@ class TestYAML:
     def test_core_schema_of_yaml_1_2(self, text, value):
         read = read_yaml(f"a: {text}")["a"]
         assert read == value and type(read) is type(value)
-
-    @pytest.mark.parametrize(
-        "text, message",
-        [
-            ("a: 1\na: 2", "line 2, column 1: the key 'a' is given twice"),
-            ("a: &x [1]\nb: *x", "anchors are not allowed here: &x"),
-            ("b: *x", "aliases are not allowed here: *x"),
-            ("a: !!python/object/apply:os.system [ls]", "tags are not allowed"),
-            ("[" * 100_000, "nested more than 20 levels deep"),
-            ("{a: " * 50_000, "nested more than 20 levels deep"),
-            ("a: " + "9" * 5000, "an integer of 5000 digits"),
-            ("? [1, 2]\n: 3", "a key must be a word"),
-            ("a: 1\n---\nb: 2", "expected a single document"),
-            ("a: [1, 2", "line 1, column 9"),
-            ("a: \x00", "special characters are not allowed"),
-            ("a" * 250_001, "longer than 250000 bytes"),
-        ],
-    )
-    def test_refused(self, text, message):
-        with pytest.raises(YAMLTextError, match=message.replace("*", r"\*")):
-            read_yaml(text)
 
 
 class TestAxes:
@@ -164,8 +143,6 @@ class TestScene:
         assert parse_scene(unequal).system == system.replace(offset=-0.8, R_left=0.5, mu_c=2.5)
         beyond = text.replace("B: 3.3", "B: -3.3")  # one stop may stand anywhere
         assert parse_scene(beyond).system == system.replace(b=-6.6)
-        with pytest.raises(SceneError, match=r"system\.physical\.B = -3\.3: must be a finite number > 0"):
-            parse_scene(beyond.replace("left", "both"))
 
     @pytest.mark.parametrize("direction, n_starts", [("up", 1), ("down", 1), ("both", 2)])
     def test_follow(self, direction, n_starts):
@@ -203,19 +180,6 @@ class TestScene:
     def test_swept_phase(self):
         parameters = parse_scene(BASE + "sweep: {tau: {values: [0, 1]}}").parameters()
         assert parameters["tau"].tolist() == [0, 1]
-
-    def test_every_problem_is_named_at_once(self):
-        text = BASE.replace("R: 0.8", "R: 1.8").replace("mu_k: 5, ", "") + "sweep: {zeta: {start: 1, stop: 0, step: 1}}"
-        with pytest.raises(SceneError) as caught:
-            parse_scene(text, "bad.yaml")
-        keys = [line.partition(":")[0].partition(" =")[0] for line in caught.value.problems]
-        assert keys == ["sweep.zeta.step", "system.mu_k", "system.R"]
-        assert str(caught.value).startswith("bad.yaml: 3 problems\n")
-
-    def test_a_thousand_problems_stay_readable(self):
-        with pytest.raises(SceneError) as caught:
-            parse_scene(f"{BASE}sweep: {{b: {{values: [{', '.join('x' * 1000)}]}}}}")
-        assert len(str(caught.value).splitlines()) == 22
 
     @pytest.mark.parametrize("values", ["[2, 3]", "[3, 2]", "[3]"])
     def test_undamped_resonance_has_no_grazing_phase(self, values):
@@ -263,25 +227,8 @@ class TestSchema:
                 assert schema.get("description"), (name, key)
 
 
-class TestFiles:
-    def test_name_and_text(self, tmp_path):
-        path = tmp_path / "my scene.yaml"
-        path.write_text(BASE)
-        scene = load_scene(path)
-        assert scene.name == "my scene" and scene.text == BASE
-
-    def test_not_text(self, tmp_path):
-        path = tmp_path / "scene.yaml"
-        path.write_bytes(b"system: \xff\xfe")
-        with pytest.raises(SceneError, match=r"scene\.yaml: byte 8 is not UTF-8"):
-            load_scene(path)
-
-    def test_huge(self, tmp_path):
-        path = tmp_path / "scene.yaml"
-        path.write_bytes(b"#" * 2_000_000)
-        with pytest.raises(SceneError, match="longer than 250000 bytes"):
-            load_scene(path)
-
-    def test_missing(self, tmp_path):
-        with pytest.raises(FileNotFoundError):
-            load_scene(tmp_path / "none.yaml")
+def test_name_and_text_of_a_file(tmp_path):
+    path = tmp_path / "my scene.yaml"
+    path.write_text(BASE)
+    scene = load_scene(path)
+    assert scene.name == "my scene" and scene.text == BASE

@@ -1,0 +1,32 @@
+"""What Python functions take: numbers, arrays and data of any kind that are what they should be.
+
+What they refuse: tests/cases/messages.yaml.
+"""
+
+import numpy as np
+import xarray as xr
+
+import vibro_sweep as vs
+
+SYSTEM = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=6.6)
+REST = (0.0, 0.0, 0.0, 0.0)
+
+
+def test_numbers_of_any_kind_are_numbers():
+    for number in (1, 1.0, np.int8(1), np.float32(1), np.longdouble(1), np.array(1)):
+        assert len(vs.simulate(SYSTEM, np.zeros(4, np.int8), periods=number, start_time=number).section) == 2
+
+
+def test_an_orbit_is_sampled_at_a_time_at_some_or_at_none():
+    for orbit in (vs.periodic_orbit(SYSTEM.replace(b=3.0), itinerary="LR"), vs.simulate(SYSTEM, REST, periods=1)):
+        assert orbit.sample([]).shape == (0, 4) and orbit.sample(0).shape == (1, 4)
+
+
+def test_values_of_xarray_and_what_is_not_masked():
+    wanted = vs.sweep(SYSTEM, {"b": [6.5, 6.6]}, transient=0, record=3)
+    for axis in (xr.DataArray([6.5, 6.6], dims="b"), {"values": xr.DataArray([6.5, 6.6])}, np.ma.array([6.5, 6.6])):
+        assert vs.sweep(SYSTEM, {"b": axis}, transient=0, record=3).equals(wanted)
+    assert SYSTEM.replace(b=wanted.b[1]) == SYSTEM
+    assert np.array_equal(
+        vs.simulate(SYSTEM, xr.DataArray(np.zeros(4)), 2).section, vs.simulate(SYSTEM, REST, 2).section
+    )

@@ -1,0 +1,46 @@
+"""The program `vibro-sweep` in this process."""
+
+import contextlib
+import gc
+import io
+import signal
+import sys
+from typing import NamedTuple
+from unittest import mock
+
+from vibro_sweep.__main__ import program
+
+
+class Ended(NamedTuple):
+    """The exit status of a program, and what it printed."""
+
+    status: int
+    out: str
+    err: str
+
+
+def ended(*arguments: str) -> Ended:
+    """Run the program with these arguments."""
+    out, err = _stream(), _stream()
+    with contextlib.ExitStack() as stack:
+        stack.enter_context(mock.patch.object(sys, "argv", ["vibro-sweep", *arguments]))
+        stack.enter_context(contextlib.redirect_stdout(out))
+        stack.enter_context(contextlib.redirect_stderr(err))
+        # What the program does to a process of its own would last: garbage that is kept, and another answer to Ctrl-C.
+        for name in ("disable", "freeze"):
+            stack.enter_context(mock.patch.object(gc, name))
+        stack.enter_context(mock.patch.object(sys, "unraisablehook"))
+        stack.callback(signal.signal, signal.SIGINT, signal.getsignal(signal.SIGINT))
+        try:
+            program()
+        except SystemExit as end:
+            return Ended(end.code or 0, _text(out), _text(err))
+    raise AssertionError("the program did not end")
+
+
+def _stream() -> io.TextIOWrapper:
+    return io.TextIOWrapper(io.BytesIO(), encoding="utf-8", write_through=True)
+
+
+def _text(stream: io.TextIOWrapper) -> str:
+    return stream.buffer.getvalue().decode()
