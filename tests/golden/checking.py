@@ -12,6 +12,7 @@ from golden import (
     searches,
     simulations,
     sweeps,
+    texts,
     windows,
 )
 
@@ -28,6 +29,7 @@ COMPARED = {  # kind -> what differs between a record and what is computed now, 
     "simulations": simulations.differences_from,
     "exponents": exponents.differences_from,
     "maps": maps.differences_from,
+    "texts": texts.differences_from,
 }
 
 

@@ -2,7 +2,7 @@
 
 import sys
 
-from golden import records
+from golden import records, texts
 from golden.checking import COMPARED, compared
 
 from tools.golden import front, making, simulated, sweeps
@@ -22,6 +22,7 @@ MADE = {  # kind -> its records, made now; in the order in which one kind needs 
     "simulations": simulated.all_simulations,
     "exponents": lambda report: simulated.all_exponents(list(records.read("simulations").values()), report),
     "maps": simulated.all_maps,
+    "texts": lambda _: [texts.record_of(command) for command in texts.commands()],
 }
 
 
