@@ -39,31 +39,6 @@ def test_touches_that_hold_a_free_mass_are_no_impacts():
     assert vs.periodic_orbit(system, itinerary="LR").ok
 
 
-@pytest.mark.parametrize(
-    ("arguments", "said"),
-    [
-        ({}, "state: None is not allowed; it must be given, or an itinerary or a guess"),
-        ({"state": (0, 0, 0, 0), "itinerary": "R"}, "state: .* must be left out where an itinerary"),
-        ({"itinerary": "RX"}, "word of R and L"),
-        ({"itinerary": "R", "periods": 0}, "whole number"),
-        ({"guess": [(1.0, 1, 0.1), (0.5, -1, -0.1)]}, "in the order of their times"),
-        ({"state": (0, 0, 0, 0), "periods": math.inf}, "whole number"),
-        ({"state": (0, 0, 0, 0), "periods": math.nan}, "whole number"),
-        ({"guess": [(1.0, 2, 0.1)]}, "side 1 or -1"),
-        ({"guess": [(1.0, 1.5, 0.1)]}, "side 1 or -1"),
-        ({"guess": [(1.0, math.inf, 0.1)]}, "side 1 or -1"),
-        ({"guess": [(1.0, 1, 0.1)], "itinerary": ""}, "that of the guess"),
-        ({"guess": [(1.0, 1, 0.1)], "itinerary": "L"}, "that of the guess"),
-        ({"guess": [(1.0, 1, 0.1), (50.0, 1, 0.1)]}, "one period"),
-    ],
-)
-def test_bad_input_is_refused(arguments, said):
-    with pytest.raises(ValueError, match=said):
-        vs.periodic_orbit(PAPER, **arguments)
-    with pytest.raises(ValueError, match="a word of stops that the system has"):
-        vs.periodic_orbit(PAPER.replace(stops="right"), itinerary="L")
-
-
 def test_orbit_survives_its_file(tmp_path):
     orbit = vs.periodic_orbit(PAPER.replace(b=1.0), itinerary="LLRR")
     path = orbit.save(tmp_path / "orbit.json")

@@ -9,7 +9,6 @@ import vibro_sweep as vs
 from vibro_sweep.analysis.attractors import grouping
 from vibro_sweep.driver import blocks
 from vibro_sweep.driver.drawn_starts import starts_of
-from vibro_sweep.scene import SceneError
 from vibro_sweep.scene import scene_of as scene_from
 from vibro_sweep.scene.written import changed
 
@@ -191,47 +190,6 @@ def test_a_point_that_cannot_be_computed_has_no_attractor(tmp_path):
     data = run(tmp_path, f"{text}\nobserve: [attractors]", f"{OSCILLATOR}, b: 6.8")
     assert np.all(data["attractor"][0] == -1) and np.isnan(data["share"][0]).all() and np.all(data["attractor"][1] >= 0)
     assert not {"x1", "lyapunov", "impacts_right"} & data.keys()
-
-
-# Scenes that cannot be
-
-
-@pytest.mark.parametrize(
-    ("text", "problem"),
-    [
-        (
-            "sweep: {x1: {values: [0, 1]}}\nstart: {random: 4}",
-            "start.random = 4: the sweep over x1 says where orbits start; give one state or leave it out",
-        ),
-        (
-            "sweep: {x1: {values: [0, 1]}, v2: {values: [0]}}\nstart: {follow: up}",
-            'start.follow = "up": the sweep over x1, v2 says where orbits start; give one state or leave it out',
-        ),
-        ("sweep: {x1: {values: [0, 6.8]}}", "sweep.x1 = 6.8: is behind a stop; |x1| must be <= 6.7"),
-        ("sweep: {x1: {values: [-6.8, 0]}}", "sweep.x1 = -6.8: is behind a stop; |x1| must be <= 6.7"),
-        (
-            "sweep: {x1: {values: [0, 6.6]}, b: {values: [6.5, 7]}}",
-            "sweep.x1 = 6.6: is behind a stop; |x1| must be <= 6.5, the smallest b of the sweep",
-        ),
-        ("sweep: {v1: {values: [0, .inf]}}", "sweep.v1.values[1] = .inf: must be a finite number"),
-        (
-            "observe: [attractor]",
-            'observe[0] = "attractor": did you mean `attractors`? '
-            "allowed: section, lyapunov, multipliers, impacts, contacts, attractors, energy, convergence",
-        ),
-        (
-            "sweep: {start_x1: {values: [0]}}",
-            'sweep.start_x1 = {"values": [0]}: unknown key; allowed here: '
-            "mu_m, mu_k, zeta, f2, omega, R, b, tau, offset, R_left, mu_c, k_stop, c_stop, preload, k_stop_left, "
-            "c_stop_left, preload_left, x1, v1, x2, v2",
-        ),
-    ],
-)
-def test_bad_scenes(text, problem):
-    with pytest.raises(SceneError) as caught:
-        scene_of(f"orbit: {{transient: 1, record: 1}}\n{text}", f"{OSCILLATOR}, b: 6.7")
-    [said] = caught.value.problems
-    assert said.partition(" (line ")[0] == problem
 
 
 def test_no_stop_no_bound():

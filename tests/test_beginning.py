@@ -68,13 +68,6 @@ def test_a_branch_ends_where_a_number_is_not_allowed_any_more(name, bounds, limi
     assert (branch.begins.parameters[name], branch.ends.parameters[name]) == limits
 
 
-@pytest.mark.parametrize("bounds", [None, (3,), ("a", 4), (5, 3), (3, 3), (float("nan"), 4)])
-def test_bounds_that_are_none_are_refused(bounds):
-    orbit = vs.periodic_orbit(PAPER.replace(b=3.0), itinerary="LR")
-    with pytest.raises(ValueError, match=r"bounds: .* it must be \(lo, hi\), lo < hi, around 3.0"):
-        vs.continue_orbit(orbit, "b", bounds)
-
-
 def test_no_torus_is_born_at_the_graze_of_an_undamped_motion():
     """There an undamped mode has multipliers on the unit circle, whatever the parameter."""
     orbit = vs.periodic_orbit(PAPER.replace(zeta=0.0, tau=0.0, b=3.0, stops="right"), itinerary="R")

@@ -47,18 +47,6 @@ def test_clearance_at_the_graze_may_have_any_sign(constant):
     assert all(item.orbit.ok and (item.orbit.system.b > b) == (item.born == "above") for item in born)
 
 
-@pytest.mark.parametrize("periods", [0, 2.5, "a", None, np.nan, 100])
-def test_bad_periods_are_refused(periods):
-    with pytest.raises(ValueError, match=f"periods: {periods!r} is not allowed"):
-        vs.born_at_grazing(PAPER, periods=periods)
-
-
-def test_without_force_nothing_grazes():
-    oscillator = vs.Oscillator.named("one_mass", k=1, zeta=0.1, F=0, omega=1, R=0.8, b=1, tau=0, constant=0.3)
-    with pytest.raises(ValueError, match="force"):
-        vs.born_at_grazing(oscillator)
-
-
 def test_complementarity_problem_against_all_sign_patterns():
     rng = np.random.default_rng(0)
     for _ in range(20):

@@ -125,37 +125,6 @@ def test_orbits_that_are_not_found_are_no_beginning(tmp_path):
         assert data.sizes["branch"] == 1
 
 
-@pytest.mark.parametrize(
-    "changes, words",
-    [
-        (dict(begin="{}"), "continue.from: says nothing; it must have one of state, itinerary, sweep"),
-        (dict(begin="{grazing: 2, sweep: a.h5}"), "continue.from: has sweep, grazing"),
-        (dict(begin="{itinerary: LX}"), 'continue.from.itinerary = "LX": must be a word of R and L'),
-        (dict(begin="{branches: a.h5}"), "continue.from.special: missing"),
-        (dict(begin="{itinerary: LR, special: 1}"), "continue.from.special: belongs to branches"),
-        (dict(parameter="{b: [3, 1]}"), "continue.parameter.b = [3, 1]: must be two numbers, the lower end"),
-        (dict(parameter="{b: [-3, 3]}"), "continue.parameter.b = -3: must be a"),
-        (dict(parameter="{b: [3, 4]}"), "system.b = 2: must be in continue.parameter: 3 .. 4"),
-        (dict(parameter="{R_left: [0.1, 0.9]}"), 'continue.parameter = "R_left": must be a number of `system`: mu_m,'),
-        (dict(parameter="{tau: [0, 1]}"), 'continue.parameter = "tau": must be a number of `system`: mu_m,'),
-        (dict(parameter="{k_stop: [1, 9]}"), 'continue.parameter = "k_stop": must be a number of `system`: mu_m,'),
-        (dict(parameter="{b: [1, 4], omega: [0.7, 0.5]}"), "continue.parameter.omega = [0.7, 0.5]: must be two"),
-        (dict(parameter="{b: [1, 4], omega: [0.7, 0.8]}"), "system.omega = 0.63: must be in"),
-        (dict(parameter="{}"), "continue.parameter = []: must have one key, or two for curves"),
-        (dict(more="of: [fold]"), "continue.of: belongs to two keys of `parameter`"),
-        (dict(more="follow: [fold]"), 'continue.follow[0] = "fold": allowed: split, graze, pitchfork, flip'),
-        (dict(more="deep: 1"), "continue.deep = 1: unknown key; did you mean `depth`?"),
-        (dict(more="follow: 3"), "continue.follow = 3: must be a list of words"),
-        (dict(begin="{itinerary: 3}"), "continue.from.itinerary = 3: must be a text"),
-        (dict(begin="{free: 3}"), "continue.from.free"),
-    ],
-)
-def test_what_is_wrong_is_said(changes, words):
-    with pytest.raises(SceneError) as found:
-        parse_continuation(text(**changes))
-    assert words in str(found.value)
-
-
 def test_scenes_of_sweeps_and_of_branches_are_told_apart():
     with pytest.raises(SceneError, match="this is a scene of branches"):
         parse_scene(text())

@@ -9,7 +9,7 @@ from vibro_sweep.driver.run_continuation import run_continuation
 from vibro_sweep.driver.windows import run_windows
 from vibro_sweep.model.bifurcations import TYPES
 from vibro_sweep.plotting import PlotOptions, figure
-from vibro_sweep.scene import SceneError, parse_continuation
+from vibro_sweep.scene import parse_continuation
 
 NUMBERS = "mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 6.6"
 
@@ -56,20 +56,6 @@ def test_the_largest_windows(few, tmp_path):  # noqa: F811
 def test_the_number_that_a_file_has_may_be_left_out():
     given = NUMBERS.replace(", b: 6.6", "")
     assert scene("{sweep: s.h5}", 5, 7, numbers=given).system.b == 5
-    with pytest.raises(SceneError, match=r"system\.b: missing"):
-        scene("{itinerary: LR}", 5, 7, numbers=given)
-
-
-@pytest.mark.parametrize(
-    "begin, words",
-    [
-        ("{itinerary: LR, largest: 3}", "continue.from.largest: belongs to sweep; leave it out"),
-        ("{sweep: s.h5, largest: 0}", "continue.from.largest = 0: must be a whole number >= 1"),
-    ],
-)
-def test_largest_belongs_to_sweeps(begin, words):
-    with pytest.raises(SceneError, match=words):
-        scene(begin, 5, 7)
 
 
 @pytest.mark.slow

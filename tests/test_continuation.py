@@ -228,16 +228,8 @@ def test_eight_masses():
     assert ends == [pytest.approx(graze.parameters["b"], abs=1e-13)]
 
 
-def test_bad_input_is_refused():
+def test_no_other_branch_begins_at_a_bound():
     orbit = vs.periodic_orbit(PAPER, itinerary="LR")
-    with pytest.raises(ValueError, match="stops"):
-        vs.continue_orbit(orbit, "stops", (0, 1))
-    with pytest.raises(ValueError, match="mu_m, mu_k"):
-        vs.continue_orbit(orbit, "beta", (0, 1))
-    with pytest.raises(ValueError, match="bounds"):
-        vs.continue_orbit(orbit, "b", (3, 4))
-    with pytest.raises(ValueError, match="inadmissible"):
-        vs.continue_orbit(vs.periodic_orbit(PAPER.replace(b=6.0), itinerary=""), "b", (1, 7))
     branch = vs.continue_orbit(orbit, "b", (1.9, 2.1))
     assert [special.type for special in branch.special] == ["boundary", "boundary"]
     with pytest.raises(ValueError, match="boundary"):
@@ -251,9 +243,3 @@ def test_steps_to_masses_that_are_not_positive(recwarn):
     assert first.ahead(0.05) is None  # 1 - 0.05 * 40 is negative
     assert first.ahead(0.01).value == pytest.approx(0.6)
     assert not recwarn.list
-
-
-def test_a_rigid_stop_has_no_numbers_of_a_compliant_one():
-    orbit = vs.periodic_orbit(PAPER.replace(b=4.0), itinerary="R")
-    with pytest.raises(vs.VibroSweepError, match=r"'c_stop' is not allowed; it must be one of mu_m, .*, R, b, offset"):
-        vs.continue_orbit(orbit, "c_stop", (0, 1))

@@ -235,19 +235,6 @@ def test_tangent_vectors_across_one_impact(changes, X):
     np.testing.assert_allclose(exponents * system.period, np.sort(growth)[::-1], rtol=0, atol=1e-9)
 
 
-def test_failure_has_no_exponents():
-    system = PAPER.replace(zeta=0.0, omega=1e-9, tau=0.0)
-    with pytest.raises(ValueError, match="omega"):
-        vs.lyapunov(system, REST)
-
-
-@pytest.mark.parametrize("arguments", [dict(transient=-1), dict(record=0), dict(record=1.5)])
-def test_bad_lengths(arguments):
-    ((name, value),) = arguments.items()
-    with pytest.raises(ValueError, match=f"{name}: {value}"):
-        vs.lyapunov(PAPER, REST, **arguments)
-
-
 def test_a_rest_on_the_way_to_an_attractor_costs_no_exponent():
     """b = 0.1: from rest the transient sticks for a while, the attractor does not."""
     system = PAPER.replace(b=0.1)

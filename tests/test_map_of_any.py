@@ -5,7 +5,7 @@ import pytest
 
 import vibro_sweep as vs
 from vibro_sweep.engine.period_map import PeriodMap
-from vibro_sweep.scene import SceneError, parse_scene
+from vibro_sweep.scene import parse_scene
 
 SYSTEMS = {
     "one mass": "{type: one_mass, k: 1, zeta: 0.05, F: 1, omega: 0.8, R: 0.7, b: %s}",
@@ -55,15 +55,3 @@ def test_sections_and_exponents(name, order, tmp_path):
         J = P([x], jacobian=True).jacobian[0] @ J
     exact = np.sort(np.log(abs(np.linalg.eigvals(J))))[::-1] / (int(data.period) * system.period)
     np.testing.assert_allclose(data.lyapunov.values, exact, rtol=0, atol=1e-8)
-
-
-@pytest.mark.parametrize("key", ["offset: 0.1", "R_left: 0.5", "constant: 0.2"])
-def test_without_symmetry_there_is_no_map(key):
-    with pytest.raises(SceneError, match=f"system.{key.split(':')[0]}.*mirror images"):
-        parse_scene(f"system: {SYSTEMS['one mass'] % 1}".replace("type", f"{key}, type") + "\n" + REST % (1, 1, 1))
-
-
-def test_no_map_while_a_constant_force_is_swept():
-    system = SYSTEMS["a chain of three"] % 1
-    with pytest.raises(SceneError, match=r"sweep\.constant2.*mirror images"):
-        parse_scene(f"system: {system}\nsweep: {{constant2: {{values: [0, 1]}}}}\n" + REST % (1, 1, 1))

@@ -13,7 +13,6 @@ from support import slow_cases
 import vibro_sweep as vs
 from vibro_sweep.model.grazing import steady_response
 from vibro_sweep.model.modes import modes
-from vibro_sweep.model.parameters import ParameterError
 
 PAPER = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=6.6)
 ORDINARY = [(10, 5), (1, 1), (0.2, 3), (30, 0.1)]
@@ -143,47 +142,6 @@ def test_physical_units_describe_the_same_motion():
     X = np.linalg.solve(K - p["Omega"] ** 2 * M + 1j * p["Omega"] * C, [p["P1"], p["P2"]])
     touch = vs.grazing(vs.System.physical(**p))
     assert touch.b == pytest.approx(abs(X[0]) * p["K1"] / (p["P1"] + p["P2"]), rel=1e-13)
-
-
-@pytest.mark.parametrize(
-    "key, value",
-    [("M1", 0), ("K2", -1), ("P1", -1), ("B", math.nan), ("Omega", math.inf), ("C1", "0.4"), ("R", 1.2)],
-)
-def test_bad_physical_units(key, value):
-    with pytest.raises(ParameterError) as error:
-        vs.System.physical(**PHYSICAL | {key: value})
-    assert error.value.key == key and repr(error.value.value) == repr(value)
-
-
-def test_physical_units_without_force():
-    with pytest.raises(ParameterError, match="P1"):
-        vs.System.physical(**PHYSICAL | {"P1": 0, "P2": 0})
-
-
-@pytest.mark.parametrize("key", ["mu_m", "mu_k", "zeta", "f2", "omega", "R", "b"])
-@pytest.mark.parametrize("value", [math.nan, math.inf, -1, -1e-300, "1", None, True, [1.0]])
-def test_bad_numbers(key, value):
-    with pytest.raises(ParameterError) as error:
-        PAPER.replace(**{key: value})
-    assert error.value.key == key and repr(error.value.value) == repr(value)
-    assert str(error.value).startswith(f"{key}: ") and error.value.allowed in str(error.value)
-
-
-@pytest.mark.parametrize(
-    "changes",
-    [
-        *({key: 0} for key in ("mu_m", "omega", "b")),
-        *({key: 1.0000001} for key in ("f2", "R")),
-        *({"tau": value} for value in (math.nan, math.inf, "graze", None, True)),
-        *({"stops": value} for value in ("none", None, 1)),
-    ],
-    ids=str,
-)
-def test_other_bad_values(changes):
-    ((key, value),) = changes.items()
-    with pytest.raises(ParameterError) as error:
-        PAPER.replace(**changes)
-    assert error.value.key == key and repr(error.value.value) == repr(value)
 
 
 def test_the_ends_of_the_allowed_ranges():

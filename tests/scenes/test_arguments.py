@@ -3,7 +3,10 @@
 What they refuse: tests/cases/messages.yaml.
 """
 
+import math
+
 import numpy as np
+import pytest
 import xarray as xr
 
 import vibro_sweep as vs
@@ -30,3 +33,11 @@ def test_values_of_xarray_and_what_is_not_masked():
     assert np.array_equal(
         vs.simulate(SYSTEM, xr.DataArray(np.zeros(4)), 2).section, vs.simulate(SYSTEM, REST, 2).section
     )
+
+
+@pytest.mark.parametrize("value", [math.nan, -1, None, "1", True, [1.0]])
+def test_the_error_of_a_number_has_its_key_the_value_and_what_is_allowed(value):
+    with pytest.raises(vs.ParameterError) as caught:
+        SYSTEM.replace(mu_m=value)
+    error = caught.value
+    assert (error.key, repr(error.value)) == ("mu_m", repr(value)) and "number" in error.allowed

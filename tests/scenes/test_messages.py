@@ -3,7 +3,7 @@
 import pytest
 from support import cases, refusals
 
-NUMBER = {"scene": 226, "command": 52, "call": 336}
+NUMBER = {"scene": 269, "command": 52, "call": 500}
 ROWS = cases.rows("messages")
 
 

@@ -1,7 +1,7 @@
 """What the program answers to a row of tests/cases/messages.yaml, and what is wrong with the answer.
 
 A row has an input:
-    scene: a text, perhaps with `change` (old text: new text) and `add` (lines at the end); or
+    scene: a text, perhaps with `change` (old text: new text), `add` (lines at the end), the `commands` that read it; or
     command: a command line, in which {x5000} stands for 5000 letters; or
     call: a Python expression, with names of `given` (name: expression), and the `files` that it writes itself.
 And it has the answer:
@@ -88,13 +88,14 @@ def text_of(row: dict[str, Any]) -> str:
 
 
 def _of_scene(row) -> Answer:
-    """Of `load_scene`, and of a command that reads a scene, which must say the same; of the three each has its turn."""
+    """Of `load_scene`, and of a command that reads a scene, which must say the same; each command has its turn."""
     text = text_of(row)
     Path(SCENE).write_text(text)
     try:
         vs.load_scene(SCENE)
     except vs.SceneError as error:
-        command = COMMANDS[len(text) % len(COMMANDS)]
+        commands = row.get("commands", COMMANDS)
+        command = commands[len(text) % len(commands)]
         status, message, defects = _of_program(command, SCENE)
         if message != str(error):
             defects += (f"{command}: {message!r}",)
@@ -129,10 +130,15 @@ def _of_call(row) -> Answer:
     except Exception as error:
         files = sorted(path.name for path in Path().iterdir())
         defects = [] if files == row.get("files", []) else [f"left the files {files}"]
-        if isinstance(error, vs.ParameterError) and not str(error).startswith(error.key):
-            defects.append(f"its key is {error.key!r}")
+        if isinstance(error, vs.ParameterError) and not _says(error):
+            defects.append(f"has the key {error.key!r} and says that it must be {error.allowed!r}")
         return Answer(", ".join(_public(type(error))), str(error), tuple(defects))
     return Answer(repr(result), None)
+
+
+def _says(error: vs.ParameterError) -> bool:
+    """Whether the message has what the error has."""
+    return str(error).startswith(f"{error.key}: ") and error.allowed in str(error)
 
 
 @functools.cache
