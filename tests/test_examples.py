@@ -67,12 +67,6 @@ def test_what_exists_is_kept(folder, capsys):
     assert Path("quickstart.yaml").read_text() == "mine" and Path("scene.schema.json").read_text() == "mine too"
 
 
-def test_unknown_name(folder, capsys):
-    assert main(["new", "quickstat"]) == 2
-    error = capsys.readouterr().err
-    assert "did you mean quickstart?" in error and "hysteresis" in error and not list(folder.iterdir())
-
-
 def test_what_is_packed():
     """The wheel takes what `new` copies; sdist all that tests need."""
     build = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["hatch"]["build"]["targets"]

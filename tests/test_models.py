@@ -265,8 +265,6 @@ def test_the_command_lists_them(capsys):
         assert main(["models", name]) == 0
         said = capsys.readouterr().out
         assert law.equations in said and all(f"  {one.name} " in said for one in law.numbers_of_both)
-    assert main(["models", "chains"]) == 2
-    assert "did you mean chain?" in capsys.readouterr().err
 
 
 @pytest.mark.slow

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-import xarray
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from support import slow_cases
@@ -76,24 +75,6 @@ def test_a_plane_in_the_axes_of_the_caller(variables):
     ax = Figure().subplots()
     assert vs.plot(data, ax=ax) is ax.figure
     assert np.array_equal(ax.images[0].get_array(), vs.plot(data).axes[0].images[0].get_array())
-
-
-@pytest.mark.few(2)
-@pytest.mark.parametrize(
-    "call, message",
-    [
-        (lambda data: vs.plot(data, "iteration", ax=Figure().subplots()), "ax: the picture has 2 panels"),
-        (lambda data: vs.plot(data, "plane"), "this dataset can show bifurcation, lyapunov, iteration, poincare"),
-        (lambda data: vs.plot(data, "iteration", at={"omega": 3}), "at: 'omega' is not swept; allowed: b"),
-        (lambda data: vs.plot(data, "iteration", at={"b": "here"}), "at.b: 'here' is not allowed"),
-        (lambda data: vs.plot(xarray.Dataset()), "it has no status"),
-    ],
-)
-def test_pictures_that_cannot_be(call, message):
-    data = vs.sweep(SYSTEM, {"b": [6.5, 6.6]}, **SHORT)
-    with pytest.raises(vs.PlotError) as caught:
-        call(data)
-    assert message in str(caught.value)
 
 
 def test_picture_of_an_orbit():

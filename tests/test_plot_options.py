@@ -6,7 +6,6 @@ import matplotlib.image
 import numpy as np
 import pytest
 from support import slow_cases
-from support.files import refused
 
 import vibro_sweep as vs
 from vibro_sweep import plotting
@@ -164,34 +163,6 @@ def test_commands(here, file, arguments, kind, options):
     assert Path("a.png").read_bytes() == Path("b.png").read_bytes() != Path("c.png").read_bytes()
     if options.dpi:
         assert matplotlib.image.imread("a.png").shape[:2] == (150, 200)
-
-
-@pytest.mark.few(6)
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        (["--at", "b"], ["--at b: write NAME=VALUE"]),
-        (["--at", "b=x"], ["--at b: 'x' is not a number"]),
-        (["--at", "b=nan"], ["at.b: nan", "finite"]),
-        (["--at", "R=1"], ["'R' is not swept", "allowed: b"]),
-        (["--at", "b=6.6", "--kind", "lyapunov"], ["kind lyapunov shows the whole sweep", "phase-portrait, "]),
-        (["--variable", "y"], ["variable 'y'", "bifurcation: x1, v1, x2, v2", "poincare: x1, x2"]),
-        (["--variable", "v1", "--kind", "lyapunov"], ["variable 'v1'", "none to choose among"]),
-        (["--xlim", "1"], ["--xlim"]),
-        (["--xlim", "1", "b"], ["--xlim: 'b' is not a number"]),
-        (["--xlim", "2", "1"], ["xlim: 2 1", "lower one first"]),
-        (["--ylim", "nan", "1"], ["ylim: nan 1"]),
-        (["--xlim", "8", "9"], ["xlim", "no b from 8 to 9", "the sweep has b from 6.4 to 6.7"]),
-        (["--size", "1", "4"], ["size: 1 4", "2 to 100 inches"]),
-        (["--size", "inf", "4"], ["size: inf 4"]),
-        (["--dpi", "0"], ["dpi: 0", "10 to 2400"]),
-        (["--dpi", "high"], ["--dpi: 'high' is not a number"]),
-        (["--size", "90", "90", "--dpi", "2000"], ["180000 x 180000 pixels", "1e+08"]),
-    ],
-)
-def test_bad_values(here, tmp_path, capsys, arguments, words):
-    refused(capsys, ["plot", here / "sweep.h5", *arguments], *words)
-    assert not list(here.glob("*.png")) and not list(tmp_path.iterdir())
 
 
 @pytest.mark.slow

@@ -10,7 +10,6 @@ from support.pictures import image, write
 
 import vibro_sweep as vs
 from vibro_sweep import plotting
-from vibro_sweep.cli.commands import main
 from vibro_sweep.model.exponents import sign_of
 from vibro_sweep.plotting import source
 from vibro_sweep.plotting.style import NEUTRAL
@@ -121,7 +120,7 @@ def test_no_numbers_no_grazing_curve(tmp_path):
 
 
 @pytest.mark.slow
-def test_planes_relative_to_the_grazing_clearance(tmp_path, monkeypatch, capsys):
+def test_planes_relative_to_the_grazing_clearance(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     axes = {"b": np.linspace(3, 5, 5), "omega": np.linspace(0.6, 0.606, 4)}
     data = vs.sweep(PAPER, axes, transient=30, record=10, observe=["section"], output="plane.h5", workers=1)
@@ -132,9 +131,6 @@ def test_planes_relative_to_the_grazing_clearance(tmp_path, monkeypatch, capsys)
     stars = [vs.grazing(PAPER.replace(omega=one)).b for one in axes["omega"]]
     assert middle == pytest.approx(axes["b"] / np.array(stars)[:, None], rel=1e-3)
     data.close()
-    vs.sweep(PAPER, {"b": [3.0, 4.0]}, transient=30, record=10, observe=["section"], output="line.h5").close()
-    assert main(["plot", "line.h5", "--relative"]) == 2
-    assert "relative: belongs to charts and planes; line.h5 can show bifurcation" in capsys.readouterr().err
 
 
 @pytest.mark.slow

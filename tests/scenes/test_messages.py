@@ -3,7 +3,7 @@
 import pytest
 from support import cases, refusals
 
-NUMBER = {"scene": 269, "command": 52, "call": 500}
+NUMBER = {"scene": 269, "command": 75, "call": 511}
 ROWS = cases.rows("messages")
 
 

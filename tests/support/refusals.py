@@ -2,7 +2,7 @@
 
 A row has an input:
     scene: a text, perhaps with `change` (old text: new text), `add` (lines at the end), the `commands` that read it; or
-    command: a command line, in which {x5000} stands for 5000 letters; or
+    command: a command line, in which {x5000} stands for 5000 times x; with a `scene` its result is there, sweep.h5; or
     call: a Python expression, with names of `given` (name: expression), and the `files` that it writes itself.
 And it has the answer:
     status: the exit status; or of a call `raises`, the public types of the exception; and
@@ -13,11 +13,13 @@ import functools
 import json
 import math
 import shlex
+import tempfile
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
+from matplotlib.figure import Figure
 
 import vibro_sweep as vs
 
@@ -37,7 +39,8 @@ sweep: {b: {values: [6.5, 6.6, 6.7]}}
     "old.h5": b"years of work",
     "half.h5.part": b"hours of work",
 }
-NAMES = {"vs": vs, "np": np, "xr": xr, "math": math, "json": json, "Path": Path}
+LONG = {"x5000": "x" * 5000, "x252": "x" * 252, "nines": "9" * 5000}
+NAMES = {"vs": vs, "np": np, "xr": xr, "math": math, "json": json, "Path": Path, "Figure": Figure}
 PUBLIC = [getattr(vs, name) for name in vs.__all__ if name.endswith("Error")]
 PUBLIC += [ValueError, TypeError, RuntimeError, ImportError, LookupError, AttributeError]
 PUBLIC += [OSError, FileExistsError, FileNotFoundError]
@@ -106,7 +109,18 @@ def _of_scene(row) -> Answer:
 def _of_command(row) -> Answer:
     for name, content in FILES.items():
         Path(name).write_bytes(content)
-    return _of_program(*(word.format(x5000="x" * 5000, x252="x" * 252) for word in shlex.split(row["command"])))
+    if "scene" in row:
+        Path("sweep.h5").write_bytes(_computed(row["scene"]))
+    return _of_program(*(word.format(**LONG) for word in shlex.split(row["command"])))
+
+
+@functools.cache
+def _computed(scene: str) -> bytes:
+    """The file of a scene."""
+    with tempfile.TemporaryDirectory() as folder:
+        Path(folder, SCENE).write_text(scene)
+        vs.run(vs.load_scene(Path(folder, SCENE)), Path(folder, "sweep.h5"))
+        return Path(folder, "sweep.h5").read_bytes()
 
 
 def _of_program(*arguments: str) -> Answer:
