@@ -1,7 +1,11 @@
 """What is refused is refused in one message, which is that of tests/cases/messages.yaml, with the exit status there."""
 
+from pathlib import Path
+
 import pytest
 from support import cases, refusals
+
+import vibro_sweep as vs
 
 NUMBER = {"scene": 269, "command": 75, "call": 511}
 ROWS = cases.rows("messages")
@@ -15,6 +19,17 @@ def in_an_empty_folder(tmp_path, monkeypatch):
 @pytest.mark.parametrize("row", ROWS)
 def test_refusal(row):
     assert refusals.faults(row) == []
+
+
+def test_python_says_the_same_of_a_scene():
+    """Of every eighth one: it is the same reader."""
+    scenes = [row for param in ROWS for row in param.values if "scene" in row and "command" not in row][::8]
+    for row in scenes:
+        Path(refusals.SCENE).write_text(refusals.text_of(row))
+        with pytest.raises(vs.SceneError) as caught:
+            vs.load_scene(refusals.SCENE)
+        assert str(caught.value) == row["message"], row["id"]
+    assert len(scenes) > 30
 
 
 def test_number_of_rows():
