@@ -13,7 +13,6 @@ from hypothesis import strategies as st
 
 import vibro_sweep as vs
 from vibro_sweep.engine.motion.impacts import MOST_EVENTS
-from vibro_sweep.model.parameters import ParameterError
 
 EPS = 2.0**-52
 PERIODS = 3
@@ -86,7 +85,7 @@ def test_anything(count):
         state = scaled(start, system.b)
         try:
             orbit = vs.simulate(system, state, periods=PERIODS)
-        except ParameterError as error:  # too stiff for the grid, and said so
+        except vs.ParameterError as error:  # too stiff for the grid, and said so
             assert error.key == "omega"
             return
         assert len(orbit.impacts) <= PERIODS * MOST_EVENTS
@@ -135,7 +134,7 @@ def test_any_exponents(count):
         system = vs.System(**values)
         try:
             exponents = vs.lyapunov(system, scaled(start, system.b), transient=1, record=2)
-        except ParameterError as error:
+        except vs.ParameterError as error:
             assert error.key == "omega"
             return
         if np.isnan(exponents).any():

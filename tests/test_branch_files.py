@@ -6,13 +6,14 @@ import numpy as np
 import pytest
 import xarray as xr
 from support import ROOT, slow_cases
+from support.programs import main
+from support.scene_texts import parsed
 from support.windows import SYSTEM
 
 import vibro_sweep as vs
-from vibro_sweep.cli.commands import main
 from vibro_sweep.driver.run_continuation import run_continuation
 from vibro_sweep.model.bifurcations import TYPES
-from vibro_sweep.scene import SceneError, json_schema, parse_continuation, parse_scene
+from vibro_sweep.scene import json_schema
 from vibro_sweep.scene.yaml_text import read_yaml
 
 NUMBERS = "{mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 2}"
@@ -27,7 +28,7 @@ def text(begin=LR, parameter=RANGE, more="depth: 1", numbers=NUMBERS):
 @pytest.fixture(scope="module")
 def file(tmp_path_factory):
     path = tmp_path_factory.mktemp("branches") / "lr.h5"
-    run_continuation(parse_continuation(text(), "lr.yaml"), path)
+    run_continuation(parsed(text(), "lr.yaml"), path)
     return path
 
 
@@ -65,15 +66,13 @@ def test_a_point_of_the_file_is_where_a_scene_goes_on(file, tmp_path):
         types = [TYPES[code].name for code in data["special_type"].values]
         at = types.index("pitchfork")
         value = float(data["special_value"][at, 0])
-    scene = parse_continuation(text(f"{{branches: {file}, special: {at}}}", more="depth: 0"))
+    scene = parsed(text(f"{{branches: {file}, special: {at}}}", more="depth: 0"))
     run_continuation(scene, tmp_path / "beyond.h5")
     with vs.open(tmp_path / "beyond.h5") as data:
         assert data["branch_symmetric"].values.tolist() == [0]  # the two mirror images are one branch
         assert float(data["b"].max()) == pytest.approx(value, abs=1e-9)
     parameter = "{omega: [0.62, 0.64]}"
-    run_continuation(
-        parse_continuation(text(f"{{branches: {file}, special: {at}}}", parameter, "depth: 0")), tmp_path / "o.h5"
-    )
+    run_continuation(parsed(text(f"{{branches: {file}, special: {at}}}", parameter, "depth: 0")), tmp_path / "o.h5")
     with vs.open(tmp_path / "o.h5") as data:
         assert data["branch_symmetric"].values[0] == 1 and data["omega"].values[0] == 0.62
         assert data.attrs["b"] == value and "tau" not in data.attrs  # of that point; grazing changes with omega
@@ -84,7 +83,7 @@ def test_it_does_not_depend_on_interruptions(file, tmp_path):
         if done == 2:
             raise KeyboardInterrupt
 
-    scene = parse_continuation(text(), "lr.yaml")
+    scene = parsed(text(), "lr.yaml")
     with pytest.raises(KeyboardInterrupt):
         run_continuation(scene, tmp_path / "lr.h5", progress=stop)
     run_continuation(scene, tmp_path / "lr.h5", mode="resume")
@@ -93,7 +92,7 @@ def test_it_does_not_depend_on_interruptions(file, tmp_path):
 
 @pytest.mark.slow
 def test_two_workers_make_the_same_file(file, tmp_path):
-    run_continuation(parse_continuation(text(), "lr.yaml"), tmp_path / "lr.h5", workers=2)
+    run_continuation(parsed(text(), "lr.yaml"), tmp_path / "lr.h5", workers=2)
     assert numbers(tmp_path / "lr.h5") == numbers(file)
 
 
@@ -111,7 +110,7 @@ def test_other_beginnings(begin, parameter, number, tmp_path):
     if "state" in begin:
         orbit = vs.periodic_orbit(SYSTEM.replace(b=2), itinerary="LR")
         begin = "{state: {" + ", ".join(f"{k}: {v}" for k, v in zip(("x1", "v1", "x2", "v2"), orbit.state)) + "}}"  # noqa: B905
-    run_continuation(parse_continuation(text(begin, parameter, "depth: 0", numbers)), tmp_path / "x.h5")
+    run_continuation(parsed(text(begin, parameter, "depth: 0", numbers)), tmp_path / "x.h5")
     with vs.open(tmp_path / "x.h5") as data:
         assert data.sizes["branch"] == number
 
@@ -120,16 +119,9 @@ def test_other_beginnings(begin, parameter, number, tmp_path):
 def test_orbits_that_are_not_found_are_no_beginning(tmp_path):
     """Of those born at a graze without damping, one of twice the period is not found."""
     numbers = "{type: one_mass, k: 1, zeta: 0, F: 0.5, omega: 0.8, stops: left, R: 0.8, b: 1}"
-    run_continuation(parse_continuation(text("{grazing: 2}", "{R: [0, 1]}", "depth: 0", numbers)), tmp_path / "x.h5")
+    run_continuation(parsed(text("{grazing: 2}", "{R: [0, 1]}", "depth: 0", numbers)), tmp_path / "x.h5")
     with vs.open(tmp_path / "x.h5") as data:
         assert data.sizes["branch"] == 1
-
-
-def test_scenes_of_sweeps_and_of_branches_are_told_apart():
-    with pytest.raises(SceneError, match="this is a scene of branches"):
-        parse_scene(text())
-    with pytest.raises(SceneError, match="continue: missing"):
-        parse_continuation(f"system: {NUMBERS}\norbit: {{transient: 1, record: 1}}\n")
 
 
 @pytest.mark.slow

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from support.scene_texts import parsed
 from support.windows import SYSTEM, few  # noqa: F401
 
 import vibro_sweep as vs
@@ -9,14 +10,13 @@ from vibro_sweep.driver.run_continuation import run_continuation
 from vibro_sweep.driver.windows import run_windows
 from vibro_sweep.model.bifurcations import TYPES
 from vibro_sweep.plotting import PlotOptions, figure
-from vibro_sweep.scene import parse_continuation
 
 NUMBERS = "mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 6.6"
 
 
 def scene(begin, start, stop, key="b", numbers=NUMBERS):
     parameter = f"parameter: {{{key}: [{start!r}, {stop!r}]}}"
-    return parse_continuation(f"system: {{{numbers}}}\ncontinue:\n  from: {begin}\n  {parameter}\n  depth: 0\n")
+    return parsed(f"system: {{{numbers}}}\ncontinue:\n  from: {begin}\n  {parameter}\n  depth: 0\n")
 
 
 def special_points(path) -> set[tuple[str, int, float]]:

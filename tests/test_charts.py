@@ -4,17 +4,17 @@ import h5py
 import numpy as np
 import pytest
 import xarray as xr
+from support.programs import main
+from support.scene_texts import parsed
 from support.windows import SYSTEM
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.curves.curve_search import Curves, compute_curve, seed_at
 from vibro_sweep.analysis.windows.edges import Plane, edges_of, passing
-from vibro_sweep.cli.commands import main
 from vibro_sweep.driver.run_continuation import run_continuation
 from vibro_sweep.model.bifurcations import CODIMENSION_TWO, CURVES
 from vibro_sweep.model.outcomes import EDGES
-from vibro_sweep.scene import parse_continuation
+from vibro_sweep.types import SpecialPoint
 
 NAMES, BOX = ("b", "omega"), ((2.5, 6), (0.58, 0.68))
 NUMBERS = "{mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 4}"
@@ -42,7 +42,7 @@ def curve():
 @pytest.fixture(scope="module")
 def file(tmp_path_factory):
     path = tmp_path_factory.mktemp("curves") / "lr.h5"
-    run_continuation(parse_continuation(text(more="of: [pitchfork]\n  depth: 0"), "lr.yaml"), path)
+    run_continuation(parsed(text(more="of: [pitchfork]\n  depth: 0"), "lr.yaml"), path)
     return path
 
 
@@ -100,16 +100,14 @@ def test_a_point_of_codimension_two_of_a_file_is_where_a_scene_goes_on(tmp_path)
     parameter = "{b: [3, 3.9], omega: [0.6, 0.62]}"
     first = tmp_path / "first.h5"
     numbers = NUMBERS.replace("b: 4", "b: 3.8").replace("0.63", "0.615")
-    run_continuation(
-        parse_continuation(text(parameter=parameter, more="of: [pitchfork]\n  depth: 0", numbers=numbers)), first
-    )
+    run_continuation(parsed(text(parameter=parameter, more="of: [pitchfork]\n  depth: 0", numbers=numbers)), first)
     with vs.open(first) as data:
         types = [CODIMENSION_TWO[code].name for code in data["special_type"].values]
         at = types.index("degenerate_flip")
         place = data["special_value"].values[at].tolist()
     begin = f"{{branches: {first}, special: {at}}}"
     second = tmp_path / "second.h5"
-    run_continuation(parse_continuation(text(begin, parameter, "depth: 0", numbers)), second)
+    run_continuation(parsed(text(begin, parameter, "depth: 0", numbers)), second)
     with vs.open(second) as data:
         assert "pitchfork" in [CURVES[code] for code in data["branch_type"].values]
         assert np.abs(data["special_value"].values - place).max(axis=1).min() < 1e-10
@@ -192,7 +190,7 @@ def test_it_depends_neither_on_interruptions_nor_on_workers(tmp_path):
         if done == 3:
             raise KeyboardInterrupt
 
-    scene = parse_continuation(text(more="depth: 1"), "lr.yaml")
+    scene = parsed(text(more="depth: 1"), "lr.yaml")
     run_continuation(scene, tmp_path / "one.h5")
     with pytest.raises(KeyboardInterrupt):
         run_continuation(scene, tmp_path / "two.h5", progress=stop)
@@ -218,7 +216,7 @@ def test_edges_of_a_plane(tmp_path):
         period = data["period"].values
         states = np.stack([data[name].isel(sample=-1).values for name in ("x1", "v1", "x2", "v2")], -1)
     parameter = "{omega: [0.63, 0.67], b: [4, 8]}"
-    run_continuation(parse_continuation(text(f"{{sweep: {plane}}}", parameter, "depth: 0")), tmp_path / "edges.h5")
+    run_continuation(parsed(text(f"{{sweep: {plane}}}", parameter, "depth: 0")), tmp_path / "edges.h5")
     with vs.open(tmp_path / "edges.h5") as data:
         one, other, reason = (data[name].values for name in ("edge_from", "edge_to", "edge_reason"))
         assert (data["edge_curve"].values[reason == 0] >= 0).all() and data.sizes["edge"] > 25

@@ -4,16 +4,16 @@ import h5py
 import numpy as np
 import pytest
 from support.faults import TEXT
+from support.scene_texts import parsed
 
 from vibro_sweep import store
-from vibro_sweep.scene import parse_scene
 from vibro_sweep.store import datasets, layout
 
 
 @pytest.mark.parametrize("follow", [False, True])
 def test_chunks(follow):
     """Large enough to be read at once, small enough to be written for a block, and cut as blocks are."""
-    scene = parse_scene(
+    scene = parsed(
         TEXT.replace("sweep:", "sweep: {R: {start: 0.5, stop: 0.9, num: 3000},").replace(", {b:", ", b:")
         + "start: {follow: up}" * follow
     )
@@ -30,7 +30,7 @@ def test_chunks(follow):
 
 def test_a_large_file_is_made_at_once(path):
     """10^9 points: what is not computed takes no place, and reads as such."""
-    scene = parse_scene(
+    scene = parsed(
         TEXT.replace("sweep:", "sweep: {R: {start: 0.5, stop: 0.9, num: 31600},")
         .replace(", {b:", ", b:")
         .replace("num: 400", "num: 31600")

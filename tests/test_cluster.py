@@ -17,12 +17,11 @@ import h5py
 import pytest
 from support import ROOT
 from support.clusters import LIMIT, Cluster
+from support.programs import main
 from support.scenes import ALL, COMPLIANT, PAPER, arrays_of, assert_same_bits, done, run
 
 import vibro_sweep as vs
-from vibro_sweep.cli.commands import main
 from vibro_sweep.driver import sweep
-from vibro_sweep.driver.compute import RunError
 
 pytest.importorskip("distributed")
 driver_cluster = pytest.importorskip("vibro_sweep.driver.cluster")
@@ -278,7 +277,7 @@ def test_a_closed_client_is_a_scheduler_that_has_died(monkeypatch):
 
     monkeypatch.setattr(driver_cluster.ClientExecutor, "submit", closed)
     executor = driver_cluster.ClusterExecutor.__new__(driver_cluster.ClusterExecutor)
-    with pytest.raises(RunError, match="the scheduler has died"):
+    with pytest.raises(vs.RunError, match="the scheduler has died"):
         executor.submit(print)
 
 

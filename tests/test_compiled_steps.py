@@ -12,13 +12,12 @@ from vibro_sweep.analysis.branches.compiled_stepper import CompiledStepper
 from vibro_sweep.analysis.continuation.first_point import guess_of, start_of_branch
 from vibro_sweep.analysis.continuation.solution_curve import branch_through
 from vibro_sweep.analysis.periodic.linearised import Linearised
-from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation.certificate import may_turn
 from vibro_sweep.engine.continuation.moving_flow import OMEGA
 from vibro_sweep.engine.continuation.workspace import TEST
 from vibro_sweep.engine.simd.jit import exported
-from vibro_sweep.model.linear import Family
+from vibro_sweep.types import Family, PeriodicOrbit
 
 
 def stepper_of(solution, name, bounds, forwards=1.0):

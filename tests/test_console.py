@@ -10,8 +10,8 @@ import time
 import h5py
 import pytest
 from support import slow_cases
+from support.programs import main
 
-from vibro_sweep.cli.commands import main
 from vibro_sweep.driver.measuring import OrbitCost
 
 SCENE = "system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 6.6}\n"

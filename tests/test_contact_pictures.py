@@ -8,7 +8,6 @@ import vibro_sweep as vs
 from vibro_sweep.model.stop_force import force_of
 from vibro_sweep.plotting import figure, kinds
 from vibro_sweep.plotting.drawn_curves import Drawn, plot_curves
-from vibro_sweep.plotting.sweep_result import PlotError
 
 SOFT = dict(zeta=0.02, F=0.6, omega=0.9, k_stop=20, c_stop=8, b=1, tau=0, stops="right")
 
@@ -52,7 +51,7 @@ def test_kinds(data):
     paper = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
     rigid = vs.sweep(paper, {"omega": [0.6]}, transient=5, record=5, trajectory={"periods": 1, "samples": 101})
     assert not {"contacts", "contact-force"} & set(kinds(rigid))
-    with pytest.raises(PlotError, match="contact-force"):
+    with pytest.raises(vs.PlotError, match="contact-force"):
         figure(rigid, "contact-force")
 
 

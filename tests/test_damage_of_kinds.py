@@ -10,9 +10,9 @@ import pytest
 from support import damage, slow_cases
 from support.changed_files import LONG, bit_in_chunk, chunked
 from support.kinds_of_files import KINDS, PERIODIC
+from support.programs import main
 
 import vibro_sweep as vs
-from vibro_sweep.cli.commands import main
 from vibro_sweep.store import parts
 from vibro_sweep.store.writing import Writer
 

@@ -6,9 +6,9 @@ from mpmath import mp, mpf
 from reference import naive
 from reference.naive_map import NaiveMap, linear_family, root_family
 from support import slow_cases
+from support.scene_texts import parsed
 
 import vibro_sweep as vs
-from vibro_sweep.scene import parse_scene
 
 PAPER = vs.System(**naive.PAPER, b=6.6)
 CASES = [(right, left) for right in (False, True) for left in (False, True)]  # of (48): which stops are hit
@@ -130,7 +130,7 @@ def test_exponents_add_up_to_the_logarithm_of_the_determinant(tmp_path, b, order
     exponents, volume = spectrum(step, step.graze, 500)
     assert sum(exponents) == pytest.approx(volume, abs=1e-12)
     scene = SCENE.replace("b: 6.6", f"b: {b}") + f"order: {order}\n{ORBIT}start: {{x1: 6}}\nobserve: [lyapunov]"
-    vs.run(parse_scene(scene), tmp_path / "map.h5")
+    vs.run(parsed(scene), tmp_path / "map.h5")
     with vs.open(tmp_path / "map.h5") as data:
         assert abs(float(data.lyapunov_residual)) < 1e-12
         if order == 1:
@@ -139,7 +139,7 @@ def test_exponents_add_up_to_the_logarithm_of_the_determinant(tmp_path, b, order
 
 def test_the_drivers_exponents_are_those_of_the_jacobians(tmp_path):
     scene = SCENE + "order: 2\norbit: {transient: 2000, record: 400}\nobserve: [section, lyapunov, impacts]"
-    vs.run(parse_scene(scene), tmp_path / "map.h5")
+    vs.run(parsed(scene), tmp_path / "map.h5")
     step = vs.discontinuity_map(PAPER, 2)
     with vs.open(tmp_path / "map.h5") as data:
         period = int(data.period)
@@ -154,7 +154,7 @@ def test_the_drivers_exponents_are_those_of_the_jacobians(tmp_path):
 @pytest.mark.parametrize(("order", "b", "mirrored"), [(1, 6.5, 0), (2, 6.5, 0), (2, 6.6, 1)])
 def test_the_driver_iterates_the_map(tmp_path, order, b, mirrored):
     scene = SCENE.replace("b: 6.6", f"b: {b}") + f"order: {order}\nstart: {{x1: 6.5, v1: 0.1}}\n"
-    vs.run(parse_scene(scene + "orbit: {transient: 0, record: 12}"), tmp_path / "map.h5")
+    vs.run(parsed(scene + "orbit: {transient: 0, record: 12}"), tmp_path / "map.h5")
     step, X = vs.discontinuity_map(PAPER.replace(b=b), order), np.array([6.5, 0.1, 0, 0])
     with vs.open(tmp_path / "map.h5") as data:
         for n in range(12):
@@ -203,7 +203,7 @@ def test_order_of_the_error_for_displacements_like_its_root(case, orders):
 
 def test_points_beyond_the_stops_are_starts_of_the_map_alone(tmp_path):
     start = ORBIT.replace("500", "0") + "start: {x1: 7}\n"
-    vs.run(parse_scene(SCENE + start), tmp_path / "map.h5")
+    vs.run(parsed(SCENE + start), tmp_path / "map.h5")
     with vs.open(tmp_path / "map.h5") as data:
         first = [float(data[name][0]) for name in ("x1", "v1", "x2", "v2")]
     np.testing.assert_allclose(first, vs.discontinuity_map(PAPER)((7, 0, 0, 0)), rtol=0, atol=1e-12)

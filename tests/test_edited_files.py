@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from support import slow_cases
 from support.files import EDITS, LINKS, SCENE, described, elsewhere, refused, seen
+from support.programs import main
 from support.scenes import arrays_of
 
 import vibro_sweep as vs
-from vibro_sweep.cli.commands import main
-from vibro_sweep.store import StoreError, parts
+from vibro_sweep.store import parts
 from vibro_sweep.store.attributes import set_text, set_texts
 
 # What is not ours in a file
@@ -50,7 +50,7 @@ def test_no_number_is_read_from_elsewhere(folder, capsys, how, name):
     before = seen(folder)
     for arguments in (["info", "x.h5"], ["plot", "x.h5"], ["run", "scene.yaml", "-o", "x.h5", "--resume"]):
         refused(capsys, arguments, "x.h5", "damaged" if how == "virtual" else "x.h5")
-    with pytest.raises(StoreError):
+    with pytest.raises(vs.StoreError):
         vs.open("x.h5")
     assert seen(folder) == before
 
@@ -86,7 +86,7 @@ def test_an_edited_file_is_refused(folder, capsys, edit):
     before = seen(folder)
     for arguments in (["info", "x.h5"], ["plot", "x.h5"], ["run", "scene.yaml", "-o", "x.h5", "--resume"]):
         refused(capsys, arguments, "x.h5")
-    with pytest.raises(StoreError):
+    with pytest.raises(vs.StoreError):
         vs.open("x.h5")
     assert seen(folder) == before
 
@@ -153,5 +153,5 @@ def test_zeros_in_the_heap_do_not_hang(folder):
         for width in (8, 64):
             Path("x.h5").write_bytes(whole[:place] + bytes(width) + whole[place + width :])
             if Path("x.h5").read_bytes() != whole:
-                with pytest.raises(StoreError, match="damaged"):
+                with pytest.raises(vs.StoreError, match="damaged"):
                     vs.open("x.h5")

@@ -14,8 +14,8 @@ from vibro_sweep.cli.commands import main
 from vibro_sweep.cli.summaries import cost_text
 from vibro_sweep.driver import cost, measuring
 from vibro_sweep.driver.blocks import blocks
-from vibro_sweep.driver.cost import Estimate
 from vibro_sweep.driver.measuring import OrbitCost
+from vibro_sweep.types import Estimate
 
 FEW = "sweep: {b: {start: 5, stop: 6, num: 10}}"
 MANY = "sweep: {b: {start: 5, stop: 6, num: 300}, R: {start: 0.5, stop: 0.9, num: 200}}"

@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 from support import ROOT
+from support.programs import main
 
 import vibro_sweep as vs
 from vibro_sweep.cli import examples
-from vibro_sweep.cli.commands import main
 from vibro_sweep.types import Continuation
 
 

@@ -4,9 +4,9 @@ import matplotlib
 import numpy as np
 import pytest
 from PIL import Image
+from support.programs import main
 
 import vibro_sweep as vs
-from vibro_sweep.cli.commands import main
 from vibro_sweep.plotting import film
 
 SYSTEM = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)

@@ -6,9 +6,10 @@ import pickle
 import numpy as np
 import pytest
 from support import ROOT
+from support.scene_texts import parsed
 
 import vibro_sweep as vs
-from vibro_sweep.scene import Section, Start, Trajectory, load_scene, parse_scene
+from vibro_sweep.types import Section, Start, Trajectory
 
 SYSTEM = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=6.6)
 NUMBERS = "mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8"
@@ -17,7 +18,7 @@ SHORT = dict(transient=20, record=10)
 
 
 def scene(more, orbit="{transient: 20, record: 10}"):
-    return parse_scene(f"system: {{{NUMBERS}}}\norbit: {orbit}\n{more}")
+    return parsed(f"system: {{{NUMBERS}}}\norbit: {orbit}\n{more}")
 
 
 def assert_same(one, other):
@@ -35,9 +36,9 @@ def assert_same(one, other):
 
 @pytest.mark.parametrize("path", SCENES, ids=lambda path: path.stem)
 def test_yaml_and_back(path):
-    one = load_scene(path)
+    one = vs.load_scene(path)
     assert one.text == path.read_text()
-    assert_same(parse_scene(one.to_yaml()), one)
+    assert_same(parsed(one.to_yaml()), one)
 
 
 @pytest.mark.parametrize(
@@ -54,7 +55,7 @@ def test_yaml_and_back(path):
 )
 def test_all_kinds_of_scenes_and_back(text):
     one = scene(text)
-    assert_same(parse_scene(one.to_yaml()), one)
+    assert_same(parsed(one.to_yaml()), one)
 
 
 def test_text_never_says_something_else():
@@ -65,7 +66,7 @@ def test_text_never_says_something_else():
         given.replace(record=50),
         given.replace(record=np.int64(50)),
     ):
-        assert "# mine" not in changed.text and parse_scene(changed.text).record == 50
+        assert "# mine" not in changed.text and parsed(changed.text).record == 50
     assert_same(given.replace(record=50).replace(record=10), given)
     assert pickle.loads(pickle.dumps(given)).text == given.text
     with pytest.raises(vs.SceneError, match=r"orbit\.record = 0: must be a whole number >= 1"):
@@ -76,8 +77,8 @@ def test_file_of_a_changed_scene_says_what_was_computed(tmp_path):
     changed = dataclasses.replace(scene("sweep: {b: {values: [6, 7]}}"), record=5)
     vs.run(changed, tmp_path / "a.h5")
     with vs.open(tmp_path / "a.h5") as data:
-        assert data.sizes["sample"] == 5 and parse_scene(data.attrs["scene"]).record == 5
-    vs.run(parse_scene(changed.text), tmp_path / "a.h5")  # the same scene
+        assert data.sizes["sample"] == 5 and parsed(data.attrs["scene"]).record == 5
+    vs.run(parsed(changed.text), tmp_path / "a.h5")  # the same scene
 
 
 @pytest.mark.parametrize(
@@ -115,7 +116,7 @@ def test_sweep_is_what_a_scene_gives(tmp_path):
         for name in data.variables:
             assert np.array_equal(found[name].values, data[name].values, equal_nan=found[name].dtype.kind == "f"), name
     assert np.array_equal(found.b, values)
-    assert_same(parse_scene(found.attrs["scene"]), scene(yaml).replace(system=SYSTEM))
+    assert_same(parsed(found.attrs["scene"]), scene(yaml).replace(system=SYSTEM))
 
 
 def test_sweep_of_two_numbers_into_a_file(tmp_path):

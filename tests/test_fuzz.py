@@ -11,12 +11,13 @@ import jsonschema
 import numpy as np
 import pytest
 from support.fuzz_scenes import broken, scene, to_yaml
+from support.programs import main
+from support.scene_texts import parsed
 from support.scenes import assert_same_bits, computed
 
 import vibro_sweep as vs
-from vibro_sweep.cli.commands import main
 from vibro_sweep.model.status import VALID
-from vibro_sweep.scene import SceneError, json_schema, parse_scene
+from vibro_sweep.scene import json_schema
 from vibro_sweep.scene.yaml_text import YAMLTextError, read_yaml
 
 EPS = 2.0**-52
@@ -84,8 +85,8 @@ def _agreement(n, validator, status):
         return "accepted"
     if not valid:
         return "refused: form"
-    with pytest.raises(SceneError) as caught:
-        parse_scene(broken(n).decode("utf-8-sig"))
+    with pytest.raises(vs.SceneError) as caught:
+        parsed(broken(n).decode("utf-8-sig"))
     for problem in caught.value.problems:
         assert BEYOND_THE_SCHEMA.search(problem), (n, problem)
     return "refused: relations and sizes"
@@ -97,8 +98,8 @@ def test_every_run_keeps_what_every_run_must(tmp_path, count):
     for n in range(count):
         text = to_yaml(scene(n))
         try:
-            one = parse_scene(text)
-        except SceneError as error:  # a sweep may lead behind a stop, or into resonance
+            one = parsed(text)
+        except vs.SceneError as error:  # a sweep may lead behind a stop, or into resonance
             assert BEYOND_THE_SCHEMA.search(str(error)), (n, str(error))
             refused += 1
             continue
@@ -130,8 +131,8 @@ def test_numbers_at_the_ends_of_the_floats():
         numbers |= {name: choose.choice(sizes) for name in choose.sample(list(numbers), 3) if name not in ("f2", "R")}
         orbit, observe = {"transient": 3, "record": 5}, ["section", "lyapunov", "impacts"]
         try:
-            one = parse_scene(to_yaml({"system": numbers, "orbit": orbit, "observe": observe}))
-        except SceneError as error:
+            one = parsed(to_yaml({"system": numbers, "orbit": orbit, "observe": observe}))
+        except vs.SceneError as error:
             assert BEYOND_THE_SCHEMA.search(str(error)), n
             continue
         arrays, _ = computed(one, 1, None)

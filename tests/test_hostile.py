@@ -9,12 +9,11 @@ from pathlib import Path
 import pytest
 from support import slow_cases
 from support.files import OBSTACLES, SCENE, TEXT, refused, seen
+from support.programs import main
 from support.scenes import arrays_of, assert_same_bits
 
 import vibro_sweep as vs
 from vibro_sweep import store
-from vibro_sweep.cli.commands import main
-from vibro_sweep.store import StoreError
 
 # Readers write nothing
 
@@ -31,7 +30,7 @@ def test_readers_change_nothing(folder, capsys, name):
     if good:
         vs.open(name).close()
     else:
-        with pytest.raises(StoreError):
+        with pytest.raises(vs.StoreError):
             vs.open(name)
     assert seen(folder) == before and "Traceback" not in capsys.readouterr().err
 
@@ -89,7 +88,7 @@ def test_the_scene_is_not_its_own_part(folder, capsys):
 @pytest.mark.parametrize("place", ["x.h5", "none.h5", "y.h5"])
 def test_a_mode_that_is_none(folder, mode, place):
     before = seen(folder)
-    with pytest.raises(StoreError, match="'new', 'resume', 'overwrite'"):
+    with pytest.raises(vs.StoreError, match="'new', 'resume', 'overwrite'"):
         vs.run(SCENE, place, mode=mode)
     assert seen(folder) == before
 
@@ -106,10 +105,10 @@ def test_what_appears_during_a_run_is_left_alone(folder, mode, what):
             place.unlink(missing_ok=True)
             OBSTACLES[what](place)
 
-    with pytest.raises(StoreError, match="has appeared during the run and is left alone; the result is complete in"):
+    with pytest.raises(vs.StoreError, match="has appeared during the run and is left alone; the result is complete in"):
         vs.run(SCENE, place, mode=mode, progress=appear)
     before = seen(folder)
-    with pytest.raises(StoreError, match=r"stands beside|is a link"):
+    with pytest.raises(vs.StoreError, match=r"stands beside|is a link"):
         vs.run(SCENE, place, mode="resume")
     assert seen(folder) == before
     place.unlink()

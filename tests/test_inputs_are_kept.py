@@ -7,9 +7,9 @@ from pathlib import Path
 import h5py
 import pytest
 from support import slow_cases
+from support.programs import main
 
 import vibro_sweep as vs
-from vibro_sweep.cli.commands import main
 from vibro_sweep.driver.run_continuation import run_continuation
 from vibro_sweep.driver.windows import run_windows
 

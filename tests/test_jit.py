@@ -10,10 +10,10 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 from support import path_with
+from support.scene_texts import parsed
 
 from vibro_sweep.driver import blocks, code_hash, compute
 from vibro_sweep.engine.simd import jit
-from vibro_sweep.scene import parse_scene
 
 SCENE = """
 system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8}
@@ -28,7 +28,7 @@ PLAIN = "import sys;" + BROKEN + "import test_jit; test_jit.save(sys.argv[1])"
 
 
 def arrays():
-    (block,) = blocks.blocks(parse_scene(SCENE), points_per_block=100)
+    (block,) = blocks.blocks(parsed(SCENE), points_per_block=100)
     return compute.compute(block)[1]
 
 

@@ -8,7 +8,8 @@ from vibro_sweep.analysis.continuation.first_point import first_place
 from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve
 from vibro_sweep.analysis.continuation.starting_orbit import KINDS
 from vibro_sweep.analysis.curves.curve_start import start_at
-from vibro_sweep.model.linear import Family, family_of
+from vibro_sweep.model.linear import family_of
+from vibro_sweep.types import Family
 
 ORBITS = [
     (PAPER.replace(b=3.0), "LR", "b", (0.3, 6.8)),

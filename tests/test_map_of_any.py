@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
+from support.scene_texts import parsed
 
 import vibro_sweep as vs
 from vibro_sweep.engine.period_map import PeriodMap
-from vibro_sweep.scene import parse_scene
 
 SYSTEMS = {
     "one mass": "{type: one_mass, k: 1, zeta: 0.05, F: 1, omega: 0.8, R: 0.7, b: %s}",
@@ -22,7 +22,7 @@ REST = "dynamics: map\norder: %d\norbit: {transient: %d, record: %d}\nobserve: [
 
 
 def dataset(system, order, transient, record, tmp_path):
-    scene = parse_scene(f"system: {system}\n" + REST % (order, transient, record))
+    scene = parsed(f"system: {system}\n" + REST % (order, transient, record))
     vs.run(scene, tmp_path / "map.h5")
     with vs.open(tmp_path / "map.h5") as found:
         return scene.system, found.load()
@@ -39,7 +39,7 @@ def states_of(data, masses):
 def test_sections_and_exponents(name, order, tmp_path):
     """Iterations with impacts one by one; at a fixed point the exponents are those of the Jacobian's eigenvalues."""
     top = vs.grazing(
-        parse_scene(f"system: {SYSTEMS[name] % 1}\nobserve: [section]\norbit: {{transient: 0, record: 1}}\n").system
+        parsed(f"system: {SYSTEMS[name] % 1}\nobserve: [section]\norbit: {{transient: 0, record: 1}}\n").system
     ).b
     system, data = dataset(SYSTEMS[name] % (0.97 * top), order, 400, 60, tmp_path)
     X, P = states_of(data, system.linear.M.shape[0]), PeriodMap(system, order)

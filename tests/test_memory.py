@@ -7,13 +7,13 @@ import tracemalloc
 import numpy as np
 import pytest
 from support import slow_cases
+from support.scene_texts import parsed
 from support.scenes import EVERY, PAPER, SCENES, arrays_of, assert_same_bits, computed, scene_of
 
 import vibro_sweep as vs
 from vibro_sweep.driver import cost, memory_needed, sweep
 from vibro_sweep.driver.measuring import OrbitCost
 from vibro_sweep.engine.one_system import points_of
-from vibro_sweep.scene import SceneError, parse_scene
 from vibro_sweep.scene.size import MAX_AT_ONCE, numbers_at_once
 
 # one number too large for a machine each, and the key that is to be named
@@ -45,7 +45,7 @@ observe: [section, lyapunov, impacts]"""
 def test_what_does_not_fit_is_refused_by_name(name):
     text, words = TOO_LARGE[name]
     tracemalloc.start()
-    with pytest.raises(SceneError, match=words):
+    with pytest.raises(vs.SceneError, match=words):
         scene_of(text)
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
@@ -61,7 +61,7 @@ def test_a_plane_without_damping_is_checked_without_holding_it(axes):
     system = "mu_m: 1, mu_k: 7.875, f2: 0, R: 0.8, b: 1"
     text = f"system: {{{system}}}\nsweep: {{{axes}}}\norbit: {{transient: 0, record: 1}}\n"
     tracemalloc.start()
-    scene = parse_scene(text)
+    scene = parsed(text)
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     assert scene.n_points == 30001**2 and peak < 50e6

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 from support import slow_cases
+from support.scene_texts import parsed
 
 import vibro_sweep as vs
 from vibro_sweep import plotting
-from vibro_sweep.scene import parse_scene
 
 CAVITY = """
 system: {type: ball_in_cavity, mass_ratio: 0.05, zeta: 0.01, F: 0.1, omega: 1, R: 0.7, b: 1}
@@ -32,7 +32,7 @@ observe: [impacts]
 
 def run(folder, text):
     path = folder / "out.h5"
-    vs.run(parse_scene(text), path)
+    vs.run(parsed(text), path)
     return path
 
 

@@ -10,9 +10,10 @@ import pytest
 from mpmath import mp, mpf
 from support import ROOT
 from support.models import PAPER, oscillator
+from support.programs import main
+from support.scene_texts import parsed
 
 import vibro_sweep as vs
-from vibro_sweep.cli.commands import main
 from vibro_sweep.cli.summaries import model_text
 from vibro_sweep.model.catalogue import OF_A_SYSTEM
 from vibro_sweep.model.contact_laws import LAWS
@@ -20,7 +21,6 @@ from vibro_sweep.model.linear import contact, rest_state
 from vibro_sweep.model.models import DEFAULT, MODELS
 from vibro_sweep.model.parameters import STOP_NUMBERS
 from vibro_sweep.model.state import MOST_MASSES
-from vibro_sweep.scene import parse_scene
 
 
 def response(q):
@@ -101,12 +101,12 @@ class TestEveryModel:
         one = oscillator(name)
         first = next(key for key, value in one.numbers.items() if isinstance(value, float) and value > 0)
         value = one.numbers[first]
-        scene = parse_scene(
+        scene = parsed(
             f"system: {_yaml(one)}\nsweep: {{{first}: {{values: [{value}, {2 * value}]}}}}\n"
             "orbit: {transient: 1, record: 2}\n"
         )
         assert scene.system == one
-        again = parse_scene(scene.to_yaml())
+        again = parsed(scene.to_yaml())
         assert again.system == one and list(again.sweep) == [first]
         assert scene.parameters()[first].tolist() == [value, 2 * value]
 

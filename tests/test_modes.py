@@ -8,14 +8,13 @@ from support.files import described
 from support.stored import SWEEP, broken_off, scene_of
 
 import vibro_sweep as vs
-from vibro_sweep.store import StoreError
 
 
 def test_new_refuses_what_is_there(path):
     scene = scene_of(SWEEP)
     part = broken_off(scene, path)
     before = open(part, "rb").read()
-    with pytest.raises(StoreError, match="is an interrupted run"):
+    with pytest.raises(vs.StoreError, match="is an interrupted run"):
         vs.run(scene, path)
     assert open(part, "rb").read() == before
     report = vs.run(scene, path, mode="resume")
@@ -24,7 +23,7 @@ def test_new_refuses_what_is_there(path):
     before = path.read_bytes()
     again = vs.run(scene, path)
     assert again == report and again.computed == 0 and path.read_bytes() == before
-    with pytest.raises(StoreError, match=r"exists, .*\n.*another scene"):
+    with pytest.raises(vs.StoreError, match=r"exists, .*\n.*another scene"):
         vs.run(scene_of(SWEEP.replace("6.7", "6.71")), path)
 
 
@@ -36,7 +35,7 @@ def test_new_refuses_a_damaged_file(path):
     with open(path, "rb+") as file:
         file.seek(offset)
         file.write(b"damage")
-    with pytest.raises(StoreError, match=r"exists, .*\n.*damaged: x1 \(1 chunk\); `resume` computes that again"):
+    with pytest.raises(vs.StoreError, match=r"exists, .*\n.*damaged: x1 \(1 chunk\); `resume` computes that again"):
         vs.run(scene, path)
     assert vs.run(scene, path, mode="resume").computed > 0
 
@@ -44,17 +43,17 @@ def test_new_refuses_a_damaged_file(path):
 def test_resume_refuses_another_scene(path):
     part = broken_off(scene_of(SWEEP), path)
     other = scene_of(SWEEP.replace("6.7", "6.71"))
-    with pytest.raises(StoreError, match="another scene"):
+    with pytest.raises(vs.StoreError, match="another scene"):
         vs.run(other, path, mode="resume")
     os.rename(part, path)
-    with pytest.raises(StoreError, match="another scene"):
+    with pytest.raises(vs.StoreError, match="another scene"):
         vs.run(other, path, mode="resume")
 
 
 def test_resume_refuses_other_code(path, monkeypatch):
     broken_off(scene_of(SWEEP), path)
     monkeypatch.setattr("vibro_sweep.driver.code_hash.code_hash", lambda: "0123456789abcdef")
-    with pytest.raises(StoreError, match="other code"):
+    with pytest.raises(vs.StoreError, match="other code"):
         vs.run(scene_of(SWEEP), path, mode="resume")
 
 

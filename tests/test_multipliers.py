@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from reference import monodromy
 from support import slow_cases
+from support.scene_texts import parsed
 
 import vibro_sweep as vs
 from vibro_sweep.engine.period_map import PeriodMap
 from vibro_sweep.model import status
-from vibro_sweep.scene import parse_scene
 
 PAPER = dict(mu_m=10.0, mu_k=5.0, zeta=0.05, f2=0.0, omega=0.63, R=0.8)
 # (system, transient): moduli of like size, real pairs of opposite sign, next to a split, moduli far apart
@@ -26,7 +26,7 @@ CASES = [
 
 def swept(tmp_path, system, sweep, orbit, observe="section, lyapunov, multipliers, impacts"):
     text = f"system: {{{system}}}\nsweep: {sweep}\norbit: {orbit}\nobserve: [{observe}]\n"
-    vs.run(parse_scene(text), tmp_path / "sweep.h5")
+    vs.run(parsed(text), tmp_path / "sweep.h5")
     return vs.open(tmp_path / "sweep.h5").load()
 
 

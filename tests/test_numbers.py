@@ -5,13 +5,13 @@ import numpy as np
 import pytest
 import xarray
 from support import ROOT, slow_cases
+from support.scene_texts import parsed
 
 import vibro_sweep as vs
 from vibro_sweep import plotting
 from vibro_sweep.driver import blocks
 from vibro_sweep.model.parameters import NAMES
-from vibro_sweep.scene import load_scene, parse_scene, resolved_numbers
-from vibro_sweep.store import StoreError
+from vibro_sweep.scene import resolved_numbers
 
 PAPER = "mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 6.6"
 ORBIT = "orbit: {transient: 3, record: 4}\nobserve: [impacts]"
@@ -30,7 +30,7 @@ SWEEPS = {
 
 def run(folder, text, system=PAPER, orbit=ORBIT):
     path = folder / "out.h5"
-    scene = parse_scene(f"system: {{{system}}}\n{text}\n{orbit}")
+    scene = parsed(f"system: {{{system}}}\n{text}\n{orbit}")
     vs.run(scene, path)
     return scene, path
 
@@ -93,7 +93,7 @@ def test_a_damaged_number_is_mended(tmp_path):
     with path.open("r+b") as file:
         file.seek(info.byte_offset + 5)
         file.write(b"\xff\x00\xff")
-    with pytest.raises(StoreError, match="b_star"):
+    with pytest.raises(vs.StoreError, match="b_star"):
         vs.open(path)
     vs.run(scene, path, mode="resume")
     with vs.open(path) as data:
@@ -131,7 +131,7 @@ def test_every_example_has_its_numbers():
     scenes = sorted(path for path in found if path.parent.name != "branches")
     assert len(scenes) > 10
     for path in scenes:
-        scene = load_scene(path)
+        scene = vs.load_scene(path)
         found = (resolved_numbers.attributes, resolved_numbers.dimensions, resolved_numbers.matrices)
         known = {name for numbers in found for name in numbers(scene)} | {*scene.sweep}
         told = {name for name, value in scene.system.numbers.items() if value not in (None, 0.0)}

@@ -6,9 +6,9 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.text import Text
 from support.kinds_of_files import KINDS
+from support.programs import main
 
 import vibro_sweep as vs
-from vibro_sweep.cli.commands import main
 from vibro_sweep.plotting import PlotOptions, figure
 from vibro_sweep.plotting import kinds as kinds_of
 

@@ -9,9 +9,9 @@ import pytest
 import xarray
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from support.kinds_of_files import KINDS, RAGGED
+from support.programs import main
 
 import vibro_sweep as vs
-from vibro_sweep.cli.commands import main
 from vibro_sweep.store.attributes import SCALES
 from vibro_sweep.store.datasets import _NO_VARIABLE
 

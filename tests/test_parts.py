@@ -8,7 +8,8 @@ import numpy as np
 import portalocker
 import pytest
 
-from vibro_sweep.store import StoreError, appending, heap, names, parts
+import vibro_sweep as vs
+from vibro_sweep.store import appending, heap, names, parts
 from vibro_sweep.store.parts import PartError, Scan
 
 SKELETON = b"skeleton " * 20
@@ -110,7 +111,7 @@ def test_without_locks_the_first_finds_out(path, monkeypatch):
     first, second = begun(path), appending.lock(path)
     second.go_on(parts.read_head(second.file), path.stat().st_size)
     second.append([[0, 1]], of(b"kept"))
-    with pytest.raises(StoreError, match="changed by another program"):
+    with pytest.raises(vs.StoreError, match="changed by another program"):
         first.append([[0, 1]], of(b"lost"))
     first.close()
     second.append([[1, 2]], of(b" too"))
@@ -134,7 +135,7 @@ def test_a_full_disk_leaves_whole_blocks(path, monkeypatch):
 
     part.file.close()
     part.file = Full(path, "r+")
-    with pytest.raises(StoreError, match="No space left on device; make room"):
+    with pytest.raises(vs.StoreError, match="No space left on device; make room"):
         part.append([], of(bytes(100)))
     assert path.read_bytes() == before
     part.close()

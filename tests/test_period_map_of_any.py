@@ -15,7 +15,7 @@ import vibro_sweep as vs
 from vibro_sweep.engine.free_flight import FreeFlight
 from vibro_sweep.engine.period_map import PeriodMap
 from vibro_sweep.model import status
-from vibro_sweep.model.linear import Linear
+from vibro_sweep.types import Linear
 
 pytestmark = pytest.mark.slow
 

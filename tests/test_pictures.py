@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 from support import slow_cases
 from support.files import OBSTACLES, refused, seen
+from support.programs import main
 
+import vibro_sweep as vs
 from vibro_sweep import plotting
-from vibro_sweep.cli.commands import main
-from vibro_sweep.plotting import PlotError
 
 SUFFIXES = (".png", ".svg", ".pdf")
 
@@ -33,7 +33,7 @@ def test_a_picture_of_ours_is_drawn_anew_until_somebody_changes_it(folder, suffi
     for changed in changes:
         path.write_bytes(changed)
         with pytest.raises(
-            PlotError, match="exists, and is not a picture that vibro-sweep drew; --overwrite replaces it"
+            vs.PlotError, match="exists, and is not a picture that vibro-sweep drew; --overwrite replaces it"
         ):
             plotting.plot("x.h5", path)
         assert path.read_bytes() == changed
@@ -111,7 +111,7 @@ def test_a_picture_that_appears_meanwhile(folder, monkeypatch):
 
     figure = plotting._draw
     monkeypatch.setattr(plotting, "_draw", drawn)
-    with pytest.raises(PlotError, match="exists, and is not a picture"):
+    with pytest.raises(vs.PlotError, match="exists, and is not a picture"):
         plotting.plot("x.h5")
     assert Path("x.png").read_text() == "years of work"
 
@@ -126,7 +126,7 @@ def test_a_picture_that_appears_at_the_last_moment(folder, monkeypatch):
         Path("x.png").write_text("years of work")
 
     monkeypatch.setattr(Figure, "savefig", saved)
-    with pytest.raises(PlotError, match="has just appeared"):
+    with pytest.raises(vs.PlotError, match="has just appeared"):
         plotting.plot("x.h5")
     assert Path("x.png").read_text() == "years of work"
 

@@ -6,12 +6,12 @@ import matplotlib.image
 import numpy as np
 import pytest
 from support import slow_cases
+from support.programs import main
+from support.scene_texts import parsed
 
 import vibro_sweep as vs
 from vibro_sweep import plotting
-from vibro_sweep.cli.commands import main
-from vibro_sweep.plotting import PlotError, PlotOptions, sweeps
-from vibro_sweep.scene import parse_scene
+from vibro_sweep.plotting import PlotOptions, sweeps
 
 SYSTEM = (
     "system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 6.6}\norbit: {transient: 20, record: 8}"
@@ -25,9 +25,9 @@ ALL = "observe: [section, lyapunov, impacts]"
 def files(tmp_path_factory):
     folder = tmp_path_factory.mktemp("looks")
     for name, text in (("sweep", SWEEP), ("plane", PLANE), ("one", "trajectory: {periods: 3, samples: 60}")):
-        vs.run(parse_scene(f"{SYSTEM}\n{text}\n{ALL}"), folder / f"{name}.h5")
+        vs.run(parsed(f"{SYSTEM}\n{text}\n{ALL}"), folder / f"{name}.h5")
     text = f"{SYSTEM}\nsection: {{kind: impact, stop: left}}\nobserve: [section]\nsweep: {{b: {{values: [2, 3]}}}}"
-    vs.run(parse_scene(text), folder / "impacts.h5")
+    vs.run(parsed(text), folder / "impacts.h5")
     return folder
 
 
@@ -169,9 +169,9 @@ def test_commands(here, file, arguments, kind, options):
 def test_limits_of_a_frequency_are_said_in_hertz_too(tmp_path):
     system = vs.Oscillator.named("one_mass", zeta=0.1, F=1, omega=6, R=0.5, b=1, units="SI")
     data = vs.sweep(system, {"omega": [2 * np.pi, 4 * np.pi]}, transient=2, record=2)
-    with pytest.raises(PlotError, match=r"has omega from 6.28319 to 12.5664 \[rad/s\], which is 1 to 2 Hz"):
+    with pytest.raises(vs.PlotError, match=r"has omega from 6.28319 to 12.5664 \[rad/s\], which is 1 to 2 Hz"):
         vs.plot(data, xlim=(1, 2))
-    with pytest.raises(PlotError, match=r"'Hz' is not swept; allowed: omega \[rad/s\]"):
+    with pytest.raises(vs.PlotError, match=r"'Hz' is not swept; allowed: omega \[rad/s\]"):
         vs.plot(data, "iteration", at={"Hz": 1})
 
 
@@ -184,7 +184,7 @@ def test_a_single_orbit_does_not_replace_the_diagram(here, tmp_path):
 
 
 def test_a_single_point_has_no_sweep_to_choose_from(files):
-    with pytest.raises(PlotError, match="allowed: nothing, it is one point"):
+    with pytest.raises(vs.PlotError, match="allowed: nothing, it is one point"):
         plotting.figure(files / "one.h5", options=PlotOptions(at={"b": 6.6}))
 
 
@@ -193,13 +193,13 @@ def test_a_single_point_has_no_sweep_to_choose_from(files):
 def test_the_scene_names_its_picture(tmp_path, kind):
     """As those of the paper's figures 3 and 4 do, whose data are those of figure 2."""
     text = f"{SYSTEM}\ntrajectory: {{periods: 2, samples: 20}}\npicture: {kind}"
-    scene = parse_scene(text)
-    assert parse_scene(scene.to_yaml()).picture == kind and scene.replace(picture=None).picture is None
+    scene = parsed(text)
+    assert parsed(scene.to_yaml()).picture == kind and scene.replace(picture=None).picture is None
     vs.run(scene, tmp_path / "a.h5")
     assert plotting.kinds(tmp_path / "a.h5")[0] == kind
     assert len(plotting.kinds(tmp_path / "a.h5")) == 6
 
 
 def test_a_picture_that_the_file_has_no_data_for(tmp_path):
-    vs.run(parse_scene(f"{SYSTEM}\npicture: plane"), tmp_path / "a.h5")
+    vs.run(parsed(f"{SYSTEM}\npicture: plane"), tmp_path / "a.h5")
     assert plotting.kinds(tmp_path / "a.h5") == ["iteration", "poincare"]

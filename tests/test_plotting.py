@@ -12,8 +12,8 @@ import pytest
 from support import slow_cases
 from support.pictures import exponents, write
 
+import vibro_sweep as vs
 from vibro_sweep import plotting
-from vibro_sweep.plotting import PlotError
 from vibro_sweep.plotting.style import edges, limits
 
 
@@ -61,39 +61,39 @@ def test_kind_all_writes_each_kind(trajectory, tmp_path):
 
 @pytest.mark.parametrize("output", ["figure.jpg", "figure", "figure.h5"])
 def test_an_output_of_another_format_is_refused(sweep, tmp_path, output):
-    with pytest.raises(PlotError, match=r"\.png, \.svg, \.pdf"):
+    with pytest.raises(vs.PlotError, match=r"\.png, \.svg, \.pdf"):
         plotting.plot(sweep, tmp_path / output)
     assert not (tmp_path / output).exists()
 
 
 def test_an_unknown_kind_names_the_ones_there_are(sweep):
-    with pytest.raises(PlotError, match=r"'plane'.*bifurcation, lyapunov, impacts, iteration"):
+    with pytest.raises(vs.PlotError, match=r"'plane'.*bifurcation, lyapunov, impacts, iteration"):
         plotting.plot(sweep, kind="plane")
 
 
 def test_the_result_is_never_overwritten(sweep, tmp_path):
     odd = sweep.rename(tmp_path / "result.png")
     before = odd.read_bytes()
-    with pytest.raises(PlotError, match=r"that is .*result\.png, which is read for it"):
+    with pytest.raises(vs.PlotError, match=r"that is .*result\.png, which is read for it"):
         plotting.plot(odd, odd)
     assert odd.read_bytes() == before
 
 
 def test_a_folder_that_is_not_there(sweep, tmp_path):
-    with pytest.raises(PlotError, match="cannot be written"):
+    with pytest.raises(vs.PlotError, match="cannot be written"):
         plotting.plot(sweep, tmp_path / "nowhere" / "figure.png")
 
 
 def test_files_that_are_no_results(tmp_path):
-    with pytest.raises(PlotError, match="no such file"):
+    with pytest.raises(vs.PlotError, match="no such file"):
         plotting.kinds(tmp_path / "missing.h5")
     text = tmp_path / "text.h5"
     text.write_text("system: {}\n" * 100)
-    with pytest.raises(PlotError, match="not an HDF5 file"):
+    with pytest.raises(vs.PlotError, match="not an HDF5 file"):
         plotting.plot(text)
     with h5py.File(tmp_path / "foreign.h5", "w") as file:
         file["status"] = np.zeros(3)
-    with pytest.raises(PlotError, match="none that vibro-sweep wrote"):
+    with pytest.raises(vs.PlotError, match="none that vibro-sweep wrote"):
         plotting.kinds(tmp_path / "foreign.h5")
 
 
@@ -101,10 +101,10 @@ def test_nothing_to_show(tmp_path):
     b = np.arange(1.0, 4)
     none = write(tmp_path / "none.h5", {"b": b}, {"x1": np.full((3, 2), np.nan)}, done=np.zeros(3, bool))
     assert plotting.kinds(none) == []
-    with pytest.raises(PlotError, match="no point is computed"):
+    with pytest.raises(vs.PlotError, match="no point is computed"):
         plotting.plot(none)
     numbers = write(tmp_path / "numbers.h5", {}, {"lyapunov": np.zeros(4)})
-    with pytest.raises(PlotError, match="lyapunov, status"):
+    with pytest.raises(vs.PlotError, match="lyapunov, status"):
         plotting.figure(numbers)
 
 

@@ -8,12 +8,12 @@ import pytest
 from matplotlib.colors import to_rgb
 from matplotlib.text import Text
 from support import slow_cases
+from support.scene_texts import parsed
 
 import vibro_sweep as vs
 from vibro_sweep import plotting
 from vibro_sweep.plotting.families import KINDS, describe, kind
 from vibro_sweep.plotting.style import NOT_COMPUTED
-from vibro_sweep.scene import parse_scene
 
 SIDES = ("right", "left")
 
@@ -21,7 +21,7 @@ PAPER = "system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 
 
 
 def run(path, text, system=PAPER):
-    vs.run(parse_scene(f"{system}\n{text}"), path)
+    vs.run(parsed(f"{system}\n{text}"), path)
     return path
 
 
@@ -210,7 +210,7 @@ def test_words():
 def test_empty_axes_say_why(tmp_path, text):
     scene = f"{PAPER}\norbit: {{transient: 5, record: 5}}\n{text}".replace("0.05", "1.0e+6")
     path = tmp_path / "failed.h5"
-    vs.run(parse_scene(scene), path)
+    vs.run(parsed(scene), path)
     for one in plotting.kinds(path):
         fig = plotting.figure(path, one)
         panels = [ax for ax in fig.axes if ax.get_label() != "<colorbar>"]

@@ -17,7 +17,7 @@ from support.scenes import PAPER, SCENES, arrays_of, assert_same_bits, scene_of
 
 import vibro_sweep as vs
 from vibro_sweep.driver import blocks, cost, jobs, memory_needed, pool
-from vibro_sweep.driver.compute import BlockError, RunError, compute
+from vibro_sweep.driver.compute import BlockError, compute
 from vibro_sweep.engine.records import result_of
 from vibro_sweep.engine.simd.lanes import LANES
 
@@ -137,7 +137,7 @@ def test_what_ends_a_run_loses_nothing(tmp_path, whole, error, attempts, words):
             raise error
         return compute(block)
 
-    with pytest.raises(RunError, match=words):
+    with pytest.raises(vs.RunError, match=words):
         vs.run(scene, output, executor=Answering(reply))
     assert sent.count(sent[0]) == attempts
     seen = []
@@ -170,7 +170,7 @@ def test_a_broken_process_pool_is_resumed(tmp_path, whole):
                 for process in pool._processes.values():
                     process.kill()
 
-        with pytest.raises(RunError, match="a worker process died"):
+        with pytest.raises(vs.RunError, match="a worker process died"):
             vs.run(scene, output, executor=pool, progress=kill)
     seen = []
     vs.run(scene, output, mode="resume", progress=lambda done, total: seen.append(done))
@@ -238,7 +238,7 @@ class Silent(Executor):
 def test_a_scheduler_that_dies_ends_in_one_message(monkeypatch, tmp_path, gone):
     for module in (jobs, pool):
         monkeypatch.setattr(module, "PATIENCE", 0.01)
-    with pytest.raises(RunError, match="the scheduler has died"):
+    with pytest.raises(vs.RunError, match="the scheduler has died"):
         list(jobs.results(Silent(gone), abs, [("a", -1)]))
-    with pytest.raises(RunError, match="the scheduler has died"):
+    with pytest.raises(vs.RunError, match="the scheduler has died"):
         vs.run(scene_of(SCENES["follow"]), tmp_path / "x.h5", executor=Silent(gone))

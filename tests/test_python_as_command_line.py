@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 from support import ROOT, slow_cases
+from support.programs import main
 
 import vibro_sweep as vs
-from vibro_sweep.cli.commands import main
-from vibro_sweep.scene import SceneError
 from vibro_sweep.types import Continuation, Scene
 
 PAPER = dict(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=6.6)
@@ -93,7 +92,7 @@ def test_a_scene_of_branches_is_changed_as_one_of_a_sweep_is(folder):
         ({"text": ""}, "unknown"),
         ({"follow": [0] * 10**6}, "follow"),
     ):
-        with pytest.raises(SceneError, match=words):
+        with pytest.raises(vs.SceneError, match=words):
             scene.replace(**wrong)
 
 

@@ -11,12 +11,12 @@ from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 import numpy as np
 import pytest
 from support import slow_cases
+from support.scene_texts import parsed
 from support.scenes import ALL, EVERY, PAPER, arrays_of, assert_same_bits, done, run, scene_of
 
 import vibro_sweep as vs
 from vibro_sweep.driver import blocks, compute
 from vibro_sweep.driver.drawn_starts import starts_of
-from vibro_sweep.scene import parse_scene
 
 SMALL = ("random", "follow", "attractors", "basins", "compliant")
 
@@ -50,7 +50,7 @@ sweep:
 orbit: {{transient: 20, record: 10}}
 observe: [section, lyapunov, impacts]
 """
-    scene = parse_scene(text)
+    scene = parsed(text)
     ((_, together),) = (compute.compute(block) for block in blocks.blocks(scene, points_per_block=100))
     for block in blocks.blocks(scene, points_per_block=1):
         with ThreadPoolExecutor(1) as fresh:  # a thread has its own tables

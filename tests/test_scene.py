@@ -6,10 +6,11 @@ import jsonschema
 import numpy as np
 import pytest
 from support import ROOT
+from support.scene_texts import parsed
 
-from vibro_sweep.model.oscillator import System
-from vibro_sweep.model.parameters import BY_NAME, OTHER_STOPS, ParameterError, check_value
-from vibro_sweep.scene import json_schema, load_scene, parse_scene
+import vibro_sweep as vs
+from vibro_sweep.model.parameters import BY_NAME, OTHER_STOPS, check_value
+from vibro_sweep.scene import json_schema
 from vibro_sweep.scene.yaml_text import read_yaml
 
 CONFIGS = ROOT / "configs"
@@ -19,7 +20,7 @@ BASE = f"{SYSTEM}\norbit: {{transient: 10, record: 4}}\n"
 
 
 def sweep(text):
-    return parse_scene(f"{BASE}sweep: {text}").sweep
+    return parsed(f"{BASE}sweep: {text}").sweep
 
 
 class TestYAML:
@@ -94,16 +95,16 @@ class TestAxes:
 
 class TestScene:
     def test_least_scene(self):
-        scene = parse_scene(BASE, "folder/least.yaml")
+        scene = parsed(BASE, "folder/least.yaml")
         assert scene.name == "least" and scene.text == BASE
-        assert scene.system == System(**NUMBERS)
+        assert scene.system == vs.System(**NUMBERS)
         assert scene.dynamics == "flow" and scene.sweep == {} and scene.shape == () and scene.n_points == 1
         assert scene.start.kind == "state" and scene.start.state == (0, 0, 0, 0) and scene.n_starts == 1
         assert (scene.transient, scene.record) == (10, 4)
         assert scene.section.kind == "phase" and scene.observe == {"section"} and scene.trajectory is None
 
     def test_all_keys(self):
-        scene = parse_scene(
+        scene = parsed(
             """
             system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, R: 0.8, tau: 0.5, stops: right}
             dynamics: flow
@@ -115,7 +116,7 @@ class TestScene:
             trajectory: {periods: 4, samples: 400}
             """
         )
-        assert scene.system == System(**(NUMBERS | dict(omega=0.6, b=5, tau=0.5)), stops="right")
+        assert scene.system == vs.System(**(NUMBERS | dict(omega=0.6, b=5, tau=0.5)), stops="right")
         assert list(scene.sweep) == ["omega", "b"] and scene.shape == (2, 3, 16) and scene.n_points == 96
         assert (scene.start.kind, scene.start.count, scene.start.seed) == ("random", 16, 1)
         assert scene.transient == 1000
@@ -126,7 +127,7 @@ class TestScene:
     def test_physical_units(self):
         numbers = "M1: 2, M2: 20, K1: 8, K2: 40, C1: 0.4, C2: 2, P1: 3, P2: 1, Omega: 1.26, R: 0.8, B: 3.3"
         text = f"system: {{physical: {{{numbers}}}, stops: left}}\norbit: {{transient: 0, record: 1}}\n"
-        system = parse_scene(text).system
+        system = parsed(text).system
         assert system.mu_m == 10 and system.mu_k == 5 and system.f2 == 0.25 and system.stops == "left"
         assert system.zeta == pytest.approx(0.05) and system.omega == pytest.approx(0.63)
         assert system.b == pytest.approx(6.6)
@@ -135,34 +136,34 @@ class TestScene:
             scaled = ", ".join(
                 f"{part.split(': ')[0]}: {float(part.split(': ')[1]) * scale}" for part in masses.split(", ")
             )
-            other = parse_scene(text.replace(masses, scaled)).system
+            other = parsed(text.replace(masses, scaled)).system
             assert other.zeta == pytest.approx(system.zeta) and other.omega == pytest.approx(system.omega)
-        swept = parse_scene(text + "sweep: {b: {values: [1, 2]}}")
+        swept = parsed(text + "sweep: {b: {values: [1, 2]}}")
         assert swept.system == system.replace(b=1)
         unequal = text.replace("B: 3.3", "B: 3.3, B0: -0.4, R_left: 0.5, C2: 1").replace("C2: 2, ", "")
-        assert parse_scene(unequal).system == system.replace(offset=-0.8, R_left=0.5, mu_c=2.5)
+        assert parsed(unequal).system == system.replace(offset=-0.8, R_left=0.5, mu_c=2.5)
         beyond = text.replace("B: 3.3", "B: -3.3")  # one stop may stand anywhere
-        assert parse_scene(beyond).system == system.replace(b=-6.6)
+        assert parsed(beyond).system == system.replace(b=-6.6)
 
     @pytest.mark.parametrize("direction, n_starts", [("up", 1), ("down", 1), ("both", 2)])
     def test_follow(self, direction, n_starts):
-        scene = parse_scene(f"{BASE}sweep: {{b: {{values: [6, 7]}}}}\nstart: {{follow: {direction}}}")
+        scene = parsed(f"{BASE}sweep: {{b: {{values: [6, 7]}}}}\nstart: {{follow: {direction}}}")
         assert scene.start.kind == "follow" and scene.start.direction == direction
         assert scene.n_starts == n_starts and scene.shape == ((2,) if n_starts == 1 else (2, 2))
 
     def test_one_random_start_makes_no_dimension(self):
-        assert parse_scene(f"{BASE}start: {{random: 1}}").shape == ()
+        assert parsed(f"{BASE}start: {{random: 1}}").shape == ()
 
     def test_trajectory_alone(self):
-        assert parse_scene(f"{BASE}observe: []\ntrajectory: {{periods: 1, samples: 2}}").observe == frozenset()
+        assert parsed(f"{BASE}observe: []\ntrajectory: {{periods: 1, samples: 2}}").observe == frozenset()
 
     def test_start_at_a_stop_and_beside_a_missing_one(self):
-        assert parse_scene(f"{BASE}start: {{x1: 6.6}}").start.state[0] == 6.6
+        assert parsed(f"{BASE}start: {{x1: 6.6}}").start.state[0] == 6.6
         one_sided = BASE.replace("b: 6.6", "b: 6.6, stops: right")
-        assert parse_scene(f"{one_sided}start: {{x1: -100}}").start.state[0] == -100
+        assert parsed(f"{one_sided}start: {{x1: -100}}").start.state[0] == -100
 
     def test_parameters(self):
-        scene = parse_scene(BASE + "sweep: {omega: {values: [0.6, 0.63]}, b: {values: [5, 6, 7]}}")
+        scene = parsed(BASE + "sweep: {omega: {values: [0.6, 0.63]}, b: {values: [5, 6, 7]}}")
         parameters = scene.parameters()
         compliant = {one.name for one in OTHER_STOPS}  # these stops are rigid
         assert tuple(parameters) == tuple(name for name in BY_NAME if name not in compliant)
@@ -174,11 +175,11 @@ class TestScene:
                 assert found == pytest.approx(expected, rel=1e-15)
 
     def test_parameters_of_one_orbit(self):
-        parameters = parse_scene(BASE).parameters()
+        parameters = parsed(BASE).parameters()
         assert parameters["tau"] == pytest.approx(2.229306509033, abs=1e-12) and parameters["b"].shape == ()
 
     def test_swept_phase(self):
-        parameters = parse_scene(BASE + "sweep: {tau: {values: [0, 1]}}").parameters()
+        parameters = parsed(BASE + "sweep: {tau: {values: [0, 1]}}").parameters()
         assert parameters["tau"].tolist() == [0, 1]
 
     @pytest.mark.parametrize("values", ["[2, 3]", "[3, 2]", "[3]"])
@@ -186,7 +187,7 @@ class TestScene:
         # mu_m = 1, mu_k = 7.875 has the mode omega_2 = 3 exactly
         system = "system: {mu_m: 1, mu_k: 7.875, zeta: 0, f2: 0, R: 0.8, b: 1}"
         text = f"{system}\norbit: {{transient: 10, record: 4}}\nsweep: {{omega: {{values: {values}}}}}"
-        phase = parse_scene(text).parameters()["tau"]
+        phase = parsed(text).parameters()["tau"]
         omega = json.loads(values)
         assert (phase == 0).tolist() == [value == 3 for value in omega]
 
@@ -204,7 +205,7 @@ class TestSchema:
     @pytest.mark.parametrize("path", sorted(CONFIGS.glob("*.yaml")), ids=lambda path: path.stem)
     def test_configs_are_valid(self, path):
         assert path.read_text().startswith("# yaml-language-server: $schema=./scene.schema.json\n")
-        assert load_scene(path).name == path.stem
+        assert vs.load_scene(path).name == path.stem
         jsonschema.Draft7Validator(json_schema()).validate(read_yaml(path.read_text()))
 
     @pytest.mark.few(5)
@@ -215,7 +216,7 @@ class TestSchema:
             try:
                 check_value(BY_NAME[key], value)
                 allowed = True
-            except ParameterError:
+            except vs.ParameterError:
                 allowed = False
             assert validator.is_valid({key: value}) == allowed, value
 
@@ -230,5 +231,5 @@ class TestSchema:
 def test_name_and_text_of_a_file(tmp_path):
     path = tmp_path / "my scene.yaml"
     path.write_text(BASE)
-    scene = load_scene(path)
+    scene = vs.load_scene(path)
     assert scene.name == "my scene" and scene.text == BASE

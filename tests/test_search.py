@@ -24,7 +24,6 @@ import vibro_sweep as vs
 from vibro_sweep.engine.one_system import Engine
 from vibro_sweep.engine.tables.cells import STIFF_CELLS
 from vibro_sweep.model.grazing import steady_response
-from vibro_sweep.model.parameters import ParameterError
 
 SEED = 11
 EVENTS = 30
@@ -140,7 +139,7 @@ def check(n):
         system = vs.System(**numbers)
         engine = Engine(system)
         orbit, events = simulate(system, state, start_time)
-    except ParameterError as error:
+    except vs.ParameterError as error:
         return report | {"accepted": False, "why": error.key}
     report |= {"status": str(orbit.status), "events": events, "accepted": orbit.status == "ok" or events >= EVENTS}
     if not report["accepted"]:

@@ -8,7 +8,6 @@ import pytest
 
 import vibro_sweep as vs
 from vibro_sweep.engine.tables import cells as tables
-from vibro_sweep.model.parameters import ParameterError
 
 PAPER = dict(mu_m=10.0, mu_k=5.0, zeta=0.05, f2=0.0, omega=0.63, R=0.8, b=1.0)
 
@@ -89,5 +88,5 @@ def test_farther_apart_than_any_grid():
 
 def test_refused_beyond_reason():
     """In a sweep such a point has a status: test_sweep.py."""
-    with pytest.raises(ParameterError, match="fastest rate"):
+    with pytest.raises(vs.ParameterError, match="fastest rate"):
         vs.simulate(vs.System(**{**PAPER, "mu_m": 1e-9, "omega": 1e-5, "zeta": 10.0}), (0, 0, 0, 0), 1)

@@ -13,7 +13,6 @@ from support.stored import ALL, IMPACTS, LYAPUNOV, PLANE, SECTION, SWEEP, scene_
 import vibro_sweep as vs
 from vibro_sweep import store
 from vibro_sweep.model.status import STATUSES
-from vibro_sweep.store import StoreError
 from vibro_sweep.store.attributes import text
 
 TRAJECTORY = "trajectory: {periods: 2, samples: 5}\n"
@@ -151,6 +150,6 @@ def test_foreign_files(foreign, name, words):
     path = foreign / name
     resume = [lambda: vs.run(scene_of(SWEEP), path, mode="resume")] if name != "none" else []
     for read in (lambda: vs.open(path), lambda: described(path), *resume):
-        with pytest.raises(StoreError, match=words) as error:
+        with pytest.raises(vs.StoreError, match=words) as error:
             read()
         assert str(path) in str(error.value)

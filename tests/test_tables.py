@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import typer
 from support import ROOT
+from support.scene_texts import parsed
 
 import vibro_sweep as vs
 from vibro_sweep.cli import reference
@@ -29,7 +30,6 @@ from vibro_sweep.model.status import STATUSES
 from vibro_sweep.model.trajectory_variables import TRAJECTORY
 from vibro_sweep.model.units import unit_in
 from vibro_sweep.model.wording import sentence
-from vibro_sweep.scene import parse_scene
 from vibro_sweep.store.creating import skeleton_of, sweep_run
 
 SYSTEM = {"mu_m": 10, "mu_k": 5, "zeta": 0.05, "f2": 0.1, "omega": 0.63, "R": 0.8, "b": 6.6}
@@ -40,7 +40,7 @@ LONGEST_LABEL = 30  # characters, beside an axis
 
 def scene_of(observe, more=""):
     scene = SCENE.replace("R: 0.8", "k_stop: 100") if "contacts" in observe else SCENE
-    return parse_scene(f"{scene}observe: [{', '.join(observe)}]\n{more}")
+    return parsed(f"{scene}observe: [{', '.join(observe)}]\n{more}")
 
 
 def skeleton(scene):

@@ -3,6 +3,7 @@
 import h5py
 import numpy as np
 import pytest
+from support.scene_texts import parsed
 
 import vibro_sweep as vs
 from vibro_sweep import plotting
@@ -12,7 +13,6 @@ from vibro_sweep.engine.one_system import points_of
 from vibro_sweep.engine.records import new_results
 from vibro_sweep.engine.trajectory import new_trajectories, run_trajectories
 from vibro_sweep.plotting import PlotOptions
-from vibro_sweep.scene import parse_scene
 
 PAPER = "mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8"
 STATE = ("x1", "v1", "x2", "v2")
@@ -20,7 +20,7 @@ STATE = ("x1", "v1", "x2", "v2")
 
 def run(folder, text, system=PAPER):
     """The scene, and its file."""
-    scene = parse_scene(f"system: {{{system}}}\n{text}")
+    scene = parsed(f"system: {{{system}}}\n{text}")
     path = folder / "out.h5"
     vs.run(scene, path, mode="overwrite")
     return scene, path
@@ -120,7 +120,7 @@ def test_portraits_reach_the_walls_where_the_orbit_does(orbits):
 def test_a_trajectory_that_fails_says_nothing():
     """Its status says what went wrong; neither zeros nor what came before look like results."""
     text = f"system: {{{PAPER}, b: 6.6}}\norbit: {{transient: 0, record: 1}}\ntrajectory: {{periods: 2, samples: 5}}"
-    (block,) = blocks.blocks(parse_scene(text), 1)
+    (block,) = blocks.blocks(parsed(text), 1)
     table = points_of(block.parameters)
     results, kept = new_results((1, 1)), new_trajectories((1, 1), 5, 2, 5)
     results["status"], results["end"], results["resting"] = 0, (0.0, np.inf, 0.0, 0.0), 0.0

@@ -5,9 +5,9 @@ import re
 
 import numpy as np
 import pytest
+from support.programs import main
 
 import vibro_sweep as vs
-from vibro_sweep.cli.commands import main
 from vibro_sweep.model.units import SI, Units, shown_unit, unit_in
 
 PHYSICAL = vs.System.physical(M1=2, M2=8, K1=2000, K2=10_000, C1=5, C2=25, P1=10, P2=0, Omega=26.0, R=0.7, B=0.012)

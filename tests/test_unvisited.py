@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 import xarray as xr
 from support import ROOT
+from support.programs import main
 from support.windows import SYSTEM
 
 import vibro_sweep as vs
-from vibro_sweep.cli.commands import main
 from vibro_sweep.driver.windows import run_windows
 
 AWAY = 1e-6  # what is added to a listed start; the orbit attracts from there

@@ -7,11 +7,11 @@ import h5py
 import numpy as np
 import pytest
 import xarray as xr
+from support.programs import main
 from support.windows import few  # noqa: F401
 
 import vibro_sweep as vs
 from vibro_sweep.analysis.periodic.itinerary import word
-from vibro_sweep.cli.commands import main
 from vibro_sweep.driver.windows import run_windows
 from vibro_sweep.model.bifurcations import TYPES
 

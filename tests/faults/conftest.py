@@ -2,10 +2,10 @@
 
 import pytest
 from support.faults import TEXT
+from support.scene_texts import parsed
 from support.scenes import arrays_of
 
 import vibro_sweep as vs
-from vibro_sweep.scene import parse_scene
 
 
 @pytest.fixture
@@ -21,11 +21,11 @@ def folder(path):
 @pytest.fixture
 def scene(monkeypatch):
     monkeypatch.setattr("vibro_sweep.driver.memory_needed.BLOCK_BYTES", 100_000)  # some ten blocks
-    return parse_scene(TEXT, "the_scene.yaml")
+    return parsed(TEXT, "the_scene.yaml")
 
 
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory):
     path = tmp_path_factory.mktemp("whole") / "whole.h5"
-    vs.run(parse_scene(TEXT), path)
+    vs.run(parsed(TEXT), path)
     return arrays_of(path)

@@ -9,12 +9,11 @@ import pytest
 from support import slow_cases
 from support.faults import TEXT, counted, failing_run
 from support.files import described
+from support.scene_texts import parsed
 from support.scenes import arrays_of, assert_same_bits
 
 import vibro_sweep as vs
 from vibro_sweep.cli import commands as cli
-from vibro_sweep.scene import parse_scene
-from vibro_sweep.store import StoreError
 
 
 def flip(path, name, bit=0, chunk=0):
@@ -37,7 +36,7 @@ def test_a_flipped_bit(scene, path, whole, name, capsys):
     box = flip(path, name)
     with pytest.raises(OSError, match="read data"), h5py.File(path) as file:
         file[name][()]
-    with pytest.raises(StoreError, match=rf"damaged: {name} \(1 chunk\); `--resume`"):
+    with pytest.raises(vs.StoreError, match=rf"damaged: {name} \(1 chunk\); `--resume`"):
         vs.open(path)
     assert f"damaged      {name} (1 chunk)" in described(path)
     if name != "lyapunov":  # which the picture of the section does not need
@@ -64,7 +63,7 @@ def test_zeros_that_become_ones(scene, path, whole, name):
     assert found < chunk.stop
     content[found : found + 4] = b"\xff" * 4
     path.write_bytes(content)
-    with pytest.raises(StoreError, match=rf"damaged: {name} \(1 chunk\)"):
+    with pytest.raises(vs.StoreError, match=rf"damaged: {name} \(1 chunk\)"):
         vs.open(path)
     vs.run(scene, path, mode="resume")
     assert_same_bits(arrays_of(path), whole)
@@ -76,7 +75,7 @@ def test_a_damaged_file_of_other_code_is_left_alone(scene, path, monkeypatch):
     flip(path, "x1")
     before = path.read_bytes()
     monkeypatch.setattr("vibro_sweep.driver.code_hash.code_hash", lambda: "0123456789abcdef")
-    with pytest.raises(StoreError, match="other code, 0123456789abcdef, another numpy or numba, or a processor"):
+    with pytest.raises(vs.StoreError, match="other code, 0123456789abcdef, another numpy or numba, or a processor"):
         vs.run(scene, path, mode="resume")
     assert path.read_bytes() == before and os.listdir(path.parent) == [path.name]
 
@@ -103,7 +102,7 @@ def test_flipped_bits_are_never_silent(scene, path, whole, count):
         path.write_bytes(changed)
         try:
             vs.open(path).close()
-        except StoreError:
+        except vs.StoreError:
             refused += 1
         else:
             assert_same_bits(arrays_of(path), whole)
@@ -112,7 +111,7 @@ def test_flipped_bits_are_never_silent(scene, path, whole, count):
 
 def test_one_orbit_is_checked_too(path):
     """A number that is not a chunk lies in a header with a checksum."""
-    scene = parse_scene(TEXT.replace("sweep: {b: {start: 6.5, stop: 6.9, num: 400}}", ""))
+    scene = parsed(TEXT.replace("sweep: {b: {start: 6.5, stop: 6.9, num: 400}}", ""))
     vs.run(scene, path)
     with h5py.File(path) as file:
         number = file["min_impact_speed"][()]
@@ -122,7 +121,7 @@ def test_one_orbit_is_checked_too(path):
     changed[content.index(number.tobytes())] ^= 1
     path.write_bytes(changed)
     for read in (vs.open, described):
-        with pytest.raises(StoreError, match="damaged"):
+        with pytest.raises(vs.StoreError, match="damaged"):
             read(path)
 
 
@@ -131,7 +130,7 @@ def test_a_file_cut_off(scene, path, keep, capsys):
     vs.run(scene, path)
     os.truncate(path, int(keep * path.stat().st_size))
     for read in (vs.open, described, lambda path: vs.run(scene, path, mode="resume")):
-        with pytest.raises(StoreError, match="not an HDF5 file, or it is damaged"):
+        with pytest.raises(vs.StoreError, match="not an HDF5 file, or it is damaged"):
             read(path)
     for command in ("info", "plot"):
         assert cli.main([command, str(path)]) == 2
@@ -168,7 +167,7 @@ def test_a_flipped_bit_in_a_part(scene, path, whole, where):
     content[int(where * len(content))] ^= 4
     part.write_bytes(content)
     assert "damaged      1 block of the run" in described(part) and 0 < counted(described(part))[0] < before
-    with pytest.raises(StoreError, match="is damaged: 1 block of the run"):
+    with pytest.raises(vs.StoreError, match="is damaged: 1 block of the run"):
         vs.open(part)
     with pytest.raises(ZeroDivisionError):
         vs.run(scene, path, workers=1, progress=lambda done, _: 1 / (done < before), mode="resume")
@@ -183,5 +182,5 @@ def test_provenance_that_is_illegible(scene, path):
     with h5py.File(path, "r+") as file:
         assert json.loads(file.attrs["provenance"])
         file.attrs["provenance"] = "{"
-    with pytest.raises(StoreError, match="damaged"):
+    with pytest.raises(vs.StoreError, match="damaged"):
         described(path)

@@ -10,12 +10,11 @@ import pytest
 from support import slow_cases
 from support.faults import TEXT, counted, failing_run
 from support.files import described
+from support.scene_texts import parsed
 from support.scenes import arrays_of, assert_same_bits
 
 import vibro_sweep as vs
 from vibro_sweep.cli import commands as cli
-from vibro_sweep.scene import parse_scene
-from vibro_sweep.store import StoreError
 
 
 @pytest.fixture
@@ -38,8 +37,8 @@ def fill(folder):
 
 
 def test_a_disk_too_small_is_said_before_anything_is_computed(small_disk, path):
-    scene = parse_scene(TEXT.replace("num: 400", "num: 4000"))
-    with pytest.raises(StoreError, match=r"out.h5.part needs \d+ MB, and only 3 MB are free in"):
+    scene = parsed(TEXT.replace("num: 400", "num: 4000"))
+    with pytest.raises(vs.StoreError, match=r"out.h5.part needs \d+ MB, and only 3 MB are free in"):
         vs.run(scene, path, progress=lambda *_: pytest.fail("a run that cannot end was begun"))
     assert os.listdir(path.parent) == []
 
@@ -65,7 +64,7 @@ def test_disk_full_while_the_file_is_made(small_disk, scene, path, whole, capfd,
             fill(path.parent)
             os.truncate(path.parent / "other", max(0, os.path.getsize(path.parent / "other") - room))
 
-    with pytest.raises(StoreError, match="No space left on device; make room"):
+    with pytest.raises(vs.StoreError, match="No space left on device; make room"):
         vs.run(scene, path, progress=fill_up)
     assert sorted(os.listdir(path.parent)) == ["other", "out.h5.part"]
     (path.parent / "other").unlink()

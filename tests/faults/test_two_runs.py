@@ -9,13 +9,12 @@ import pytest
 from support import slow_cases
 from support.faults import TEXT, counted
 from support.files import described
+from support.scene_texts import parsed
 
 import vibro_sweep as vs
 from vibro_sweep import plotting, store
 from vibro_sweep.driver import blocks, compute
 from vibro_sweep.driver.provenance import provenance
-from vibro_sweep.scene import parse_scene
-from vibro_sweep.store import StoreError
 
 
 @pytest.mark.parametrize("option", [[], *slow_cases(["--resume"], ["--overwrite"])])
@@ -59,8 +58,8 @@ def test_readers_of_a_running_run(scene, path):
 
 def test_what_differs_is_said(scene, path):
     vs.run(scene, path)
-    other = parse_scene(TEXT.replace("num: 400", "num: 401"))
-    with pytest.raises(StoreError, match="another scene") as error:
+    other = parsed(TEXT.replace("num: 400", "num: 401"))
+    with pytest.raises(vs.StoreError, match="another scene") as error:
         vs.run(other, path, mode="resume")
     told = str(error.value).splitlines()[-2:]
     assert told[0].startswith("  - sweep: {b: {start: 6.5, stop: 6.9, num: 400}}")

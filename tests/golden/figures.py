@@ -8,13 +8,13 @@ from functools import cache
 from unittest.mock import patch
 
 from matplotlib.figure import Figure
+from support.programs import ended
 
 import vibro_sweep as vs
 from golden import records
 from golden.datasets import dataset_of
 from golden.drawn import described, without_arrays
 from golden.files import PAPER, file_of
-from golden.program import called
 from golden.shown import different
 
 
@@ -53,7 +53,7 @@ def _by_command(case: dict) -> list[Figure]:
     words = [f"{case['file']}.h5", *case["command"].split()]
     files = [file_of(record) for record in records.read("files").values() if record["file"] in words]
     with patch.object(Figure, "savefig", savefig), chdir(files[0].parent):
-        status, _, errors = called("plot", *words, "--output", "picture.svg", "--overwrite")
+        status, _, errors = ended("plot", *words, "--output", "picture.svg", "--overwrite")
     if status or not figures:
         raise ValueError(errors or "nothing is drawn")
     return figures

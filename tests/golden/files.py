@@ -13,10 +13,10 @@ from pathlib import Path
 
 import h5py
 import numpy as np
+from support.programs import ended
 
 import vibro_sweep as vs
 from golden import records
-from golden.program import called
 from golden.shown import different
 
 OF_THE_RUN = ("history", "provenance", "heap", "identity", "source", "sweep")  # the last two: identities of other files
@@ -83,7 +83,7 @@ def _broken_off(record: dict, path: Path) -> None:
 
 
 def _windows(record: dict, path: Path) -> None:
-    status, _, errors = called("windows", path.with_name("sweep.h5"), "-o", path, "--workers", "1", "--quiet")
+    status, _, errors = ended("windows", path.with_name("sweep.h5"), "-o", path, "--workers", "1", "--quiet")
     if status:
         raise ValueError(errors)
 
@@ -104,7 +104,7 @@ MAKE = {
 
 def result_of(path: Path) -> dict:
     """What is kept of a file."""
-    status, out, errors = called("info", path)
+    status, out, errors = ended("info", path)
     result = {"status": status, "info": text_of(out + errors)}
     if path.suffix == ".json":
         return result | {"loaded": [_loaded(vs.load(path))]}

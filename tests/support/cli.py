@@ -2,7 +2,7 @@
 
 import pytest
 
-from vibro_sweep.cli.commands import main
+from support.programs import main
 
 NUMBERS = dict(mu_m="10", mu_k="5", zeta="0.05", f2="0", omega="0.63", R="0.8", b="6.6")
 

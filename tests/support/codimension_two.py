@@ -7,7 +7,7 @@ from reference.shooting import Shooting
 
 from support.branches import NUMBERS
 from vibro_sweep.analysis.branches.special import bare
-from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
+from vibro_sweep.types import PeriodicOrbit
 
 SLOW = 1e-9
 STEP = mpf(10) ** -12  # of the differences of Newton's method

@@ -21,7 +21,7 @@ import numpy as np
 import vibro_sweep as vs
 from support.changed_files import LONG, Case, damages, edits
 from support.kinds_of_files import KINDS, PERIODIC, RAGGED, SYSTEM, WrittenKinds, write_scenes
-from vibro_sweep.cli.commands import main
+from support.programs import main
 
 HARMLESS, REFUSED, TOLD, DRAWN = "as the whole file", "refused", "told damaged", "another result"
 OUTCOMES = (HARMLESS, REFUSED, TOLD, DRAWN)

@@ -3,7 +3,6 @@
 import pytest
 
 import vibro_sweep as vs
-from vibro_sweep.store import StoreError
 
 TEXT = """
 system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 6.6}
@@ -30,7 +29,7 @@ def failing_run(scene, path, words, after=3, fault=lambda: None, mode="new"):
         if len(seen) == after + 1:
             fault()
 
-    with pytest.raises(StoreError, match=words) as error:
+    with pytest.raises(vs.StoreError, match=words) as error:
         vs.run(scene, path, workers=1, progress=progress, mode=mode)
     assert "\n" not in str(error.value)
     return str(error.value), seen

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 import vibro_sweep as vs
-from vibro_sweep.cli.commands import main
+from support.programs import main
+from support.scene_texts import parsed
 from vibro_sweep.cli.info import examine
-from vibro_sweep.scene import parse_scene
 from vibro_sweep.store.attributes import set_text, set_texts
 
 TEXT = """
@@ -21,7 +21,7 @@ sweep: {b: {start: 6.5, stop: 6.9, num: 12}}
 orbit: {transient: 5, record: 6}
 observe: [section, lyapunov, impacts]
 """
-SCENE = parse_scene(TEXT, "the_scene.yaml")
+SCENE = parsed(TEXT, "the_scene.yaml")
 
 
 @pytest.fixture(scope="module")

@@ -20,8 +20,8 @@ import numpy as np
 
 import vibro_sweep as vs
 from support.files import EDITS, LINKS, TEXT, elsewhere
-from vibro_sweep.cli.commands import main
-from vibro_sweep.store import StoreError, parts
+from support.programs import main
+from vibro_sweep.store import parts
 
 OUTCOMES = ("same numbers", "refused", "told damaged", "fewer points")
 COMMANDS = ("info", "plot", "open", "resume")
@@ -181,7 +181,7 @@ def command(name: str, path: Path, whole: dict[str, np.ndarray]) -> str:
         try:
             with vs.open(path) as data:
                 return _compared(data, whole)
-        except StoreError:
+        except vs.StoreError:
             return "refused"
     target = path.with_suffix("") if path.suffix == ".part" else path
     arguments = {"resume": ["run", "scene.yaml", "-o", str(target), "--resume", "--quiet", "--workers", "1"]}

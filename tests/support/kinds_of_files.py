@@ -10,7 +10,7 @@ from typing import NamedTuple
 import pytest
 
 import vibro_sweep as vs
-from vibro_sweep.cli.commands import main
+from support.programs import main
 
 SYSTEM = "system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 6}\n"
 LINEAR = """

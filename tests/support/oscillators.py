@@ -3,7 +3,7 @@
 import numpy as np
 
 import vibro_sweep as vs
-from vibro_sweep.model.linear import Family, Linear
+from vibro_sweep.types import Family, Linear
 
 PAPER = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=2.0)
 

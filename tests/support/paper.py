@@ -12,8 +12,8 @@ import numpy as np
 
 import vibro_sweep as vs
 from support import ROOT
+from support.scene_texts import parsed
 from vibro_sweep.model.status import VALID
-from vibro_sweep.scene import parse_scene
 
 SCENES = ROOT / "configs" / "paper"
 FIGURES = {  # scene: the kind of picture that the paper shows, and what else is worth a look
@@ -66,7 +66,7 @@ class Runner:
         system = f"system: {{{', '.join(numbers)}}}\n"
         text = f"{system}{model}\n{sweep}start: {start}\norbit: {orbit}\n{OBSERVE}"
         path = Path(self.folder.name) / "scene.h5"
-        vs.run(parse_scene(text), path, workers=self.workers, mode="overwrite")
+        vs.run(parsed(text), path, workers=self.workers, mode="overwrite")
         with vs.open(path) as data:
             return data.load()
 

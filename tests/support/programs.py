@@ -3,6 +3,7 @@
 import contextlib
 import gc
 import io
+import os
 import signal
 import sys
 from typing import NamedTuple
@@ -19,17 +20,26 @@ class Ended(NamedTuple):
     err: str
 
 
-def ended(*arguments: str) -> Ended:
+def main(arguments) -> int:
+    """Run the program, which prints as it does; its exit status."""
+    end = ended(*arguments)
+    sys.stdout.write(end.out)
+    sys.stderr.write(end.err)
+    return end.status
+
+
+def ended(*arguments) -> Ended:
     """Run the program with these arguments."""
     out, err = _stream(), _stream()
     with contextlib.ExitStack() as stack:
-        stack.enter_context(mock.patch.object(sys, "argv", ["vibro-sweep", *arguments]))
+        stack.enter_context(mock.patch.object(sys, "argv", ["vibro-sweep", *map(str, arguments)]))
         stack.enter_context(contextlib.redirect_stdout(out))
         stack.enter_context(contextlib.redirect_stderr(err))
         # What the program does to a process of its own would last: garbage that is kept, and another answer to Ctrl-C.
         for name in ("disable", "freeze"):
             stack.enter_context(mock.patch.object(gc, name))
         stack.enter_context(mock.patch.object(sys, "unraisablehook"))
+        stack.enter_context(mock.patch.object(os, "_exit", sys.exit))  # after Ctrl-C
         stack.callback(signal.signal, signal.SIGINT, signal.getsignal(signal.SIGINT))
         try:
             program()

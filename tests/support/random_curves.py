@@ -13,8 +13,8 @@ import vibro_sweep as vs
 from support.curves import chosen, solution_at
 from support.random_branches import attractors, random_system
 from vibro_sweep.analysis.branches.branch_run import stop_and_impact
-from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.periodic.periodic_orbit import orbit_of
+from vibro_sweep.types import SpecialPoint
 
 TYPES = ("fold", "flip", "pitchfork", "neimark_sacker", "graze")
 CLOSE = 1e-9  # of the state after a period of simulation, relative, times the largest multiplier

@@ -6,7 +6,7 @@ import numpy as np
 
 import vibro_sweep as vs
 from support.drawn_branches import Case
-from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
+from vibro_sweep.types import PeriodicOrbit
 
 CLOSE = 1e-9  # relative to the parameter or its range: values of one special point differ by less
 MOST_POINTS = 4000

@@ -5,10 +5,9 @@ import numpy as np
 import xarray  # noqa: F401  before a run begins that `done` is to see in the middle: loading it takes a second
 
 import vibro_sweep as vs
+from support.scene_texts import parsed
 from vibro_sweep.driver import blocks
 from vibro_sweep.driver.compute import CHAIN_ENDS, compute
-from vibro_sweep.scene import parse_scene
-from vibro_sweep.store import StoreError
 
 OSCILLATOR = "mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8"
 PAPER = f"{OSCILLATOR}, b: 6.6"
@@ -95,7 +94,7 @@ EVERY = {name: (text,) for name, text in SCENES.items()} | COMPLIANT
 
 
 def scene_of(text, system=PAPER):
-    return parse_scene(f"system: {{{system}}}\n{text}")
+    return parsed(f"system: {{{system}}}\n{text}")
 
 
 def arrays_of(path):
@@ -115,7 +114,7 @@ def done(output):
     try:
         with vs.open(f"{output}.part") as data:
             return np.count_nonzero(data["status"].values != -1)
-    except StoreError:  # it is being made
+    except vs.StoreError:  # it is being made
         return 0
 
 

@@ -13,7 +13,6 @@ from mpmath import mp, mpf
 
 import vibro_sweep as vs
 from support.drawn_stiff import drawn
-from vibro_sweep.model.parameters import ParameterError
 
 DIGITS = 50
 COUNT = 6  # impacts compared
@@ -172,7 +171,7 @@ def compared(seed):
     report |= {"seed": seed, "errors": {}}
     try:
         orbit = vs.simulate(system, state, PERIODS)
-    except ParameterError as error:
+    except vs.ParameterError as error:
         return report | {"refused": error.key}
     if orbit.status != "ok":
         return report | {"refused": str(orbit.status)}

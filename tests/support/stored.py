@@ -3,7 +3,7 @@
 import pytest
 
 import vibro_sweep as vs
-from vibro_sweep.scene import parse_scene
+from support.scene_texts import parsed
 
 SYSTEM = (
     "system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 6.6}\norbit: {transient: 3, record: 4}\n"
@@ -17,7 +17,7 @@ IMPACTS = {"impacts_right", "impacts_left", "min_impact_speed", "contact_error",
 
 
 def scene_of(text):
-    return parse_scene(SYSTEM + text, "some/folder/the_scene.yaml")
+    return parsed(SYSTEM + text, "some/folder/the_scene.yaml")
 
 
 class Interruption(Exception):  # noqa: N818
