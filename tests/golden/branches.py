@@ -5,20 +5,20 @@ import numpy as np
 import vibro_sweep as vs
 from golden.motions import (
     Motion,
+    contacts_of,
     distance,
     errors_of,
     labels,
     motion_of,
     multiplier_distance,
     orbit_from,
-    rows_of,
     system_of,
 )
 from golden.passing import passed_in_order
 from golden.special_points import changed, differences, ends_of, special_record
 
 POINTS = 50  # of a branch
-SWITCHED = ("graze", "pitchfork", "flip")
+SWITCHED = ("graze", "pitchfork", "flip", "split")
 
 
 def followed(record: dict):
@@ -60,13 +60,14 @@ def _orbit_at(branch, k: int, periods):
     count = point.sizes["impact"]
     if not count:
         return vs.periodic_orbit(system, itinerary="")
-    rows = rows_of(point.impact_t.values, point.impact_side.values, point.impact_v.values)
+    t, side, v = point.impact_t.values, point.impact_side.values, point.impact_v.values
+    state, compliant = np.array([float(point[name]) for name in states(branch.points)]), system.linear.compliant
     for n in periods:
         try:
-            orbit = vs.periodic_orbit(system, guess=rows, periods=n)
+            orbit = Motion(system.omega, n, t, side, v, state, np.empty(0), compliant).found_again(system)
         except ValueError:  # more impacts than fit into the period
             continue
-        if orbit.ok and len(orbit.impacts) == count:
+        if orbit.ok and len(orbit.impacts) + len(orbit.contacts) == count:
             return orbit
     return None
 
@@ -84,21 +85,27 @@ def switched(branch) -> list[list[dict]]:
 
 def _points(branch, rng, count: int) -> dict:
     points, name = branch.points, branch.parameter
-    orbit = own_orbit(branch)
-    system, motions = orbit.system, motions_of(branch, orbit)
+    own = own_orbit(branch)
+    system, motions = own.system, motions_of(branch, own)
     inner = np.unique(np.linspace(1, len(motions) - 2, count).round().astype(int)) if len(motions) > 2 else []
     values = points[name].values
     kept = {key: [] for key in ("value", "t", "v", "state", "re", "im", "error", "multiplier_error")}
+    if system.linear.compliant:
+        kept["contacts"] = []
     for k in inner:
         value, motion = float(values[k]), motions[k]
+        if system.linear.compliant:
+            orbit = motion.found_again(system.replace(**{name: value}))
+            motion.contacts = contacts_of(motion_of(orbit), motion) if orbit.ok else None
         errors = errors_of(system, name, value, motion, rng) or (None, None)
         numbers = (value, motion.t, motion.v, motion.state, motion.multipliers.real, motion.multipliers.imag, *errors)
+        numbers += (motion.contacts,) if "contacts" in kept else ()
         for key, number in zip(kept, numbers, strict=True):
-            kept[key].append(np.asarray(number).tolist() if isinstance(number, np.ndarray) else number)
+            kept[key].append(number.tolist() if isinstance(number, np.ndarray) else number)
     side = points.impact_side.values[0].tolist() if points.sizes["impact"] else []
-    if side:
+    if side and not system.linear.compliant:
         del kept["state"]
-    return kept | {"side": side, "period": orbit.period}
+    return kept | {"side": side, "period": own.period}
 
 
 def motions_of(branch, orbit) -> list[Motion]:
@@ -108,7 +115,7 @@ def motions_of(branch, orbit) -> list[Motion]:
     omega = p["omega"].values if name == "omega" else np.full(len(state), orbit.system.omega)
     multipliers = p.multiplier_re.values + 1j * p.multiplier_im.values
     rows = zip(omega, p.impact_t.values, p.impact_side.values, p.impact_v.values, state, multipliers, strict=True)
-    return [Motion(w, orbit.period, t, s, v, x, mu) for w, t, s, v, x, mu in rows]
+    return [Motion(w, orbit.period, *numbers, orbit.system.linear.compliant) for w, *numbers in rows]
 
 
 def stored_motions(system, name: str, points: dict) -> list[Motion]:
@@ -119,7 +126,10 @@ def stored_motions(system, name: str, points: dict) -> list[Motion]:
         t, v = np.array(points["t"][k], float), np.array(points["v"][k], float)
         state = np.array(points["state"][k] if "state" in points else [])
         multipliers = np.array(points["re"][k]) + 1j * np.array(points["im"][k])
-        result.append(Motion(omega, points["period"], t, side, v, state, multipliers))
+        contacts = points["contacts"][k] if "contacts" in points else None
+        contacts = None if contacts is None else np.array(contacts)
+        compliant = system.linear.compliant
+        result.append(Motion(omega, points["period"], t, side, v, state, multipliers, compliant, contacts))
     return result
 
 
@@ -148,7 +158,7 @@ def corrected(system, name: str, points: dict, stored: list[Motion]) -> list[str
     ):
         if error is None:  # it was not found again either when the record was made
             continue
-        orbit = vs.periodic_orbit(system.replace(**{name: value}), **motion.start)
+        orbit = motion.found_again(system.replace(**{name: value}))
         if orbit.status not in ("ok", "inadmissible"):
             lines.append(f"point at {value!r}: {orbit.status}")
             continue

@@ -2,6 +2,7 @@
 
 from golden import (
     answers,
+    births,
     branches,
     contact_windows,
     curves,
@@ -9,6 +10,7 @@ from golden import (
     figures,
     files,
     maps,
+    onsets,
     searches,
     simulations,
     sweeps,
@@ -30,6 +32,12 @@ COMPARED = {  # kind -> what differs between a record and what is computed now, 
     "exponents": exponents.differences_from,
     "maps": maps.differences_from,
     "texts": texts.differences_from,
+    "compliant_branches": branches.differences_from,
+    "compliant_curves": curves.differences_from,
+    "compliant_searches": searches.differences_from,
+    "compliant_windows": windows.differences_from,
+    "births": births.differences_from,
+    "onsets": onsets.differences_from,
 }
 
 

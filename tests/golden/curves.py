@@ -13,6 +13,7 @@ from golden.passing import in_order, passed
 from golden.special_points import changed, differences, ends_of, nearest, special_record
 
 POINTS = 50
+ENDS = ("closed", "boundary", "failed", "split", "unrelaxed")  # from which no other curve begins
 LEAST_SPEED = 1e-6  # where all impacts graze, speeds are rounding
 
 
@@ -50,9 +51,8 @@ def result_of(curves) -> dict:
 
 def switched(curve) -> list[list[list]]:
     """Of each point of codimension two the curves that pass it, or begin there."""
-    ends = ("closed", "boundary", "failed")
     return [
-        [] if one.type in ends else [[start.type, labels(start.orbit)] for start in vs.switch(one)]
+        [] if one.type in ENDS else [[start.type, labels(start.orbit)] for start in vs.switch(one)]
         for one in curve.special
     ]
 

@@ -5,7 +5,7 @@ import sys
 from golden import records, texts
 from golden.checking import COMPARED, compared
 
-from tools.golden import front, making, simulated, sweeps
+from tools.golden import births, compliant, front, making, simulated, sweeps
 from tools.golden.table import table
 
 MADE = {  # kind -> its records, made now; in the order in which one kind needs another
@@ -23,6 +23,12 @@ MADE = {  # kind -> its records, made now; in the order in which one kind needs 
     "exponents": lambda report: simulated.all_exponents(list(records.read("simulations").values()), report),
     "maps": simulated.all_maps,
     "texts": lambda _: [texts.record_of(command) for command in texts.commands()],
+    "compliant_branches": compliant.all_branches,
+    "compliant_curves": lambda report: compliant.all_curves(list(records.read("compliant_branches").values()), report),
+    "compliant_searches": compliant.all_searches,
+    "compliant_windows": sweeps.all_compliant_windows,
+    "births": births.all_births,
+    "onsets": births.all_onsets,
 }
 
 

@@ -6,9 +6,12 @@ from support.drawn_branches import MODELS, Case, beyond, drawn_case
 
 import vibro_sweep as vs
 
+OF_STOPS = ("k_stop", "preload", "c_stop")  # compliant ones
 DEEP = 3  # branches from branch to branch
 SEED = 30
-SECOND = ("omega", "R", "zeta", "b", "offset", "F", "mu_k", "mass_ratio", "k", "f2", "mu_m")  # of a curve's plane
+SECOND = (  # of a curve's plane
+    "omega", "R", "zeta", "b", "offset", "F", "mu_k", "mass_ratio", "k", "f2", "mu_m", *OF_STOPS,
+)  # fmt: skip
 BOX = (0.1, 0.06)  # of both parameters, relative, each way
 INNER = 0.5  # of the box
 CURVES = ("fold", "flip", "pitchfork", "neimark_sacker", "graze", "sticking")
@@ -26,7 +29,12 @@ def _record(name: str, case: Case) -> dict:
 def cases(seed: int):
     """Of a drawn oscillator a branch, and branches beyond its special points, each once."""
     model, rng = MODELS[seed % len(MODELS)], np.random.default_rng([SEED, seed])
-    case, seen = drawn_case(model, rng), []
+    yield from one_after_the_other(f"drawn {seed}", model, drawn_case(model, rng), rng)
+
+
+def one_after_the_other(name: str, model: str, case: Case | None, rng):
+    """A branch, and branches beyond its special points, each once."""
+    seen = []
     for depth in range(DEEP):
         if case is None:
             return
@@ -35,7 +43,7 @@ def cases(seed: int):
         if points in seen:
             return
         seen.append(points)
-        yield _record(f"drawn {seed}.{depth}, {model}", case)
+        yield _record(f"{name}.{depth}, {model}", case)
         case = beyond(branch, case, rng) if branch.ok else None
 
 

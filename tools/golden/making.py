@@ -18,7 +18,7 @@ OTHERS = {"branches": 0, "curves": 1, "searches": 2}  # of seeds
 
 def timed(function, *given):
     """What a function returns; None where it takes long also when all is compiled."""
-    for _ in range(4):
+    for _ in range(2):
         begun = time.process_time()
         result = function(*given)
         if time.process_time() - begun < LONGEST:

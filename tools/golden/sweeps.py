@@ -15,7 +15,7 @@ from tools.golden.named import PAPER
 START = {"random": 2, "seed": 1}
 
 
-def sweeps() -> list[tuple]:
+def rigid() -> list[tuple]:
     """Name, oscillator, parameter, values."""
     return [
         ("paper in b", PAPER, "b", np.linspace(4.2, 6.9, 55)),
@@ -26,9 +26,28 @@ def sweeps() -> list[tuple]:
     ]
 
 
+def compliant() -> list[tuple]:
+    one = vs.Oscillator.named("one_mass", zeta=0.05, F=0.5, omega=0.9, b=0.6, k_stop=29.0, c_stop=0.5, tau=0.0)
+    two = PAPER.replace(R=None, k_stop=100.0)
+    return [
+        ("compliant one mass in b", one.replace(stops="right"), "b", np.linspace(0.4, 2.6, 23)),
+        ("compliant one mass left by force in omega", one.replace(preload=0.05, release="force"), "omega",
+         np.linspace(0.4, 1.4, 21)),
+        ("compliant paper in b", two, "b", np.linspace(2.0, 6.8, 25)),
+    ]  # fmt: skip
+
+
 def all_windows(told) -> list[dict]:
+    return _windows_of(rigid(), told)
+
+
+def all_compliant_windows(told) -> list[dict]:
+    return _windows_of(compliant(), told)
+
+
+def _windows_of(sweeps: list[tuple], told) -> list[dict]:
     result = []
-    for name, system, parameter, values in sweeps():
+    for name, system, parameter, values in sweeps:
         file = f"{name.replace(' ', '_')}.h5.gz"
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "sweep.h5"
