@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from support import slow_cases
 
-from golden import branches, checking, curves, records, searches, windows
+from golden import births, branches, checking, curves, onsets, records, searches, windows
 from golden.motions import system_of
 
 FEW = {  # of each kind those that the fast tests compare; the others are slow, and oscillators that need kernels
@@ -17,6 +17,12 @@ FEW = {  # of each kind those that the fast tests compare; the others are slow, 
     "windows": (),
 }
 MOST_MASSES = 4
+WITH_CONTACTS = "compliant, one mass, its clearance"  # the fast tests compile kernels of one mass with compliant stops
+MOVED = 1e-11  # of contacts: more than rounding of omega does to the orbit
+SAMPLES = {  # of records of up to two masses; `tools.golden check` compares all
+    "compliant_branches": 12, "compliant_curves": 6, "compliant_searches": 3, "compliant_windows": 2, "births": 12,
+    "onsets": 6,
+}  # fmt: skip
 
 
 def chosen(kind: str, test):
@@ -48,6 +54,19 @@ def test_oscillators_of_many_masses(kind):
     assert wrong(kind, chosen(kind, lambda record: system_of(record["system"]).masses > MOST_MASSES)) == {}
 
 
+def test_a_branch_with_contacts():
+    assert wrong("compliant_branches", chosen("compliant_branches", lambda one: one["name"] == WITH_CONTACTS)) == {}
+
+
+@pytest.mark.parametrize("kind", list(SAMPLES))
+@pytest.mark.slow
+def test_a_sample(kind):
+    able = list(chosen(kind, lambda record: system_of(record["system"]).masses <= 2).values())
+    drawn = np.random.default_rng(1).permutation(len(able))[: SAMPLES[kind]]
+    assert len(drawn) == SAMPLES[kind]
+    assert wrong(kind, {able[i]["name"]: able[i] for i in drawn}) == {}
+
+
 def both_errors(special) -> float:
     return special["error"] + special.get("error now", special["error"])
 
@@ -68,7 +87,8 @@ def with_a_point_moved(result):
 
 
 def with_an_end_moved(result):
-    special = result["special"][0]
+    ends = [result["special"][k] for k in result["ends"]]
+    special = next(one for one in ends if one["type"] != "boundary")
     special["parameters"]["b"] -= 2 * both_errors(special)
 
 
@@ -108,6 +128,24 @@ CHANGES = (
 )  # fmt: skip
 
 
+def with_another_speed(result):
+    result["points"]["v"][20][0] *= 1 + MOVED
+
+
+def with_a_contact_that_lasts_longer(result):
+    points = result["points"]
+    points["contacts"][20][0][0] += MOVED
+
+
+def with_another_force(result):
+    points = result["points"]
+    points["contacts"][20][0][2] *= 1 + MOVED
+
+
+OF_CONTACTS = (with_a_contact_that_lasts_longer, with_another_force, with_another_speed)
+OF_ROUNDING = (with_a_point_of_the_branch_moved,)  # by less than rounding of omega moves the orbit with contacts
+
+
 @pytest.fixture(scope="module")
 def one():
     """A record of a branch, and that branch."""
@@ -115,10 +153,24 @@ def one():
     return record, branches.followed(record)
 
 
+@pytest.fixture(scope="module")
+def one_with_contacts():
+    record = records.read("compliant_branches")[WITH_CONTACTS]
+    return record, branches.followed(record)
+
+
 @pytest.mark.few(2)
 @pytest.mark.parametrize("change", [*CHANGES[:5], *slow_cases(*CHANGES[5:])])
 def test_the_comparison_sees(one, change):
-    record, branch = one
+    seen(*one, change)
+
+
+@pytest.mark.parametrize("change", [*OF_CONTACTS, *slow_cases(*(one for one in CHANGES if one not in OF_ROUNDING))])
+def test_the_comparison_sees_with_contacts(one_with_contacts, change):
+    seen(*one_with_contacts, change)
+
+
+def seen(record, branch, change):
     rng, changed = np.random.default_rng(1), copy.deepcopy(record["result"])
     assert branches.compared(record, changed, branch, rng) == []
     for kept, now in zip(changed["special"], branch.special, strict=True):
@@ -127,9 +179,12 @@ def test_the_comparison_sees(one, change):
     assert len(branches.compared(record, changed, branch, rng)) > 0
 
 
+@pytest.mark.parametrize("kind, name", [("curves", FEW["curves"][0]), ("compliant_curves", None)])
 @pytest.mark.slow
-def test_the_comparison_sees_what_a_curve_lost():
-    record = records.read("curves")[FEW["curves"][0]]
+def test_the_comparison_sees_what_a_curve_lost(kind, name):
+    """Of compliant stops the first curve of one mass."""
+    able = chosen(kind, lambda one: name in (one["name"], None) and system_of(one["system"]).masses <= 2)
+    record = next(iter(able.values()))
     made = curves.traced(record)
     for change in (without_a_point, with_a_point_moved, with_points_in_another_order):
         changed = copy.deepcopy(record["result"])
@@ -154,3 +209,22 @@ def test_the_comparison_sees_a_window_that_moved():
     end = changed["windows"][k]["ends"][0]
     end["parameters"][record["parameter"]] -= 2 * both_errors(end)
     assert windows.compared(record, changed, found) != [] == windows.compared(record, record["result"], found)
+
+
+def test_the_comparison_sees_what_is_born_otherwise():
+    result = next(iter(records.read("births").values()))["result"]
+    fewer, faster, above = result[1:], copy.deepcopy(result), copy.deepcopy(result)
+    faster[0]["speeds"][0] += 3 * faster[0]["allowed"][0]
+    above[0]["born"] = "above" if above[0]["born"] == "below" else "below"
+    assert births.compared(result, result) == []
+    assert all(births.compared(result, changed) for changed in (fewer, faster, above))
+
+
+def test_the_comparison_sees_an_onset_that_moved():
+    record = next(one for one in records.read("onsets").values() if any(one["result"]))
+    lost, moved = copy.deepcopy(record["result"]), copy.deepcopy(record["result"])
+    k = next(k for k, one in enumerate(moved) if one is not None)
+    lost[k] = None
+    moved[k]["parameters"][record["parameter"]] += 3 * moved[k]["error"]
+    assert onsets.compared(record, record["result"], record["result"]) == []
+    assert all(onsets.compared(record, changed, record["result"]) for changed in (lost, moved))
