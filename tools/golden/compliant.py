@@ -12,13 +12,14 @@ import vibro_sweep as vs
 from tools.golden import drawing
 from tools.golden.making import MOST_REACHED, tried
 
-COUNTS = {"branches": {1: 26, 2: 26, 3: 8}, "curves": {1: 18, 2: 18, 3: 4}, "searches": {1: 7, 2: 7, 3: 1}}  # by masses
+COUNTS = {"branches": {1: 29, 2: 26, 3: 8}, "curves": {1: 18, 2: 18, 3: 4}, "searches": {1: 7, 2: 7, 3: 1}}  # by masses
 SEEDS = {"branches": 0, "searches": 100_000}
 MODELS = {1: ("one_mass", "one_mass", "linear"), 2: ("two_mass", "chain", "linear"), 3: ("chain", "linear")}
 LAWS = ("alike", "unlike", "mixed")
 MOST_EVENTS = 16  # contacts and impacts of an orbit: longer ones take long to follow
 PER_ORBIT = 2  # branches of one drawn oscillator
 NOT_NEGATIVE = ("c_stop", "preload", "c_stop_left", "preload_left", "zeta")
+BOX = (0.5, 0.4)  # of both parameters of a curve, relative, each way: as far as ends and points of codimension two
 CURVES = ("fold", "flip", "pitchfork", "neimark_sacker", "graze")
 
 
@@ -65,8 +66,25 @@ def drawn_cases(masses: int, seed: int):
         yield record
 
 
+def ends_of_contacts() -> dict:
+    """Branches that end where the contact never ends, or where the stop has not relaxed at the next touch."""
+    held = dict(k=1.0, zeta=0.05, omega=5.5, k_stop=29.0, c_stop=0.5, b=1.0, tau=0.0, constant=1.5, stops="right")
+    slow = dict(k=1.0, zeta=0.05, F=0.5, omega=0.8, k_stop=29.0, c_stop=2.0, b=1.0, tau=0.0, stops="right")
+    met_again = dict(
+        k=1.0, zeta=0.21946461644074794, F=1.4480217615475175, omega=1.624381452744489, R=0.5119483099802649,
+        k_stop_left=391.3381999367444, c_stop_left=50.0, preload_left=0.18166495017546266, b=0.7118563659162448,
+        tau=1.3880336099211246,
+    )  # fmt: skip
+    cases = {
+        "contact that never ends": (held | {"F": 0.3}, "R", "F", (0.01, 5)),
+        "stop that has not relaxed": (slow | {"release": "force"}, "R", "c_stop", (1, 12)),
+        "stop that is met before it is out": (met_again | {"release": "force"}, "LR", "c_stop_left", (45, 70)),
+    }
+    return {name: (vs.Oscillator.named("one_mass", **given), *case) for name, (given, *case) in cases.items()}
+
+
 def named_cases():
-    for name, (system, itinerary, parameter, bounds) in BRANCHES.items():
+    for name, (system, itinerary, parameter, bounds) in (BRANCHES | ends_of_contacts()).items():
         start = {"itinerary": itinerary, "periods": 1}
         yield {
             "name": f"compliant, {name}", "system": system_record(system), "start": start, "parameter": parameter,
@@ -139,7 +157,7 @@ def all_curves(known: list[dict], report) -> list[dict]:
         points.sort(key=lambda point: types[point[2]["type"]])
         branch, k, special = points.pop(0)
         masses = system_of(branch["system"]).masses
-        case = drawing.one_curve(branch, special, rng, f"{branch['name']}, {special['type']} {k}")
+        case = drawing.one_curve(branch, special, rng, f"{branch['name']}, {special['type']} {k}", BOX)
         if case and counted[masses] < COUNTS["curves"][masses] and (made := tried(curve_record, case, report)):
             report(made["name"])
             result.append(made)

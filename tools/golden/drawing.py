@@ -47,7 +47,7 @@ def one_after_the_other(name: str, model: str, case: Case | None, rng):
         case = beyond(branch, case, rng) if branch.ok else None
 
 
-def one_curve(record: dict, special: dict, rng, name: str) -> dict | None:
+def one_curve(record: dict, special: dict, rng, name: str, box=BOX) -> dict | None:
     """A curve from a special point of a branch: another parameter, and a box around the point."""
     numbers, first = record["system"], record["parameter"]
     others = [one for one in SECOND if one != first and isinstance(numbers.get(one), float) and numbers[one]]
@@ -56,7 +56,7 @@ def one_curve(record: dict, special: dict, rng, name: str) -> dict | None:
     second = others[int(rng.integers(min(2, len(others))))] if rng.random() < 0.7 else str(rng.choice(others))
     at = special["parameters"][first], numbers[second]
     boxes = [
-        [_around(one, key, share * part) for one, key, share in zip(at, (first, second), BOX, strict=True)]
+        [_around(one, key, share * part) for one, key, share in zip(at, (first, second), box, strict=True)]
         for part in (1.0, INNER)
     ]
     start = {key: record[key] for key in ("system", "start", "parameter", "bounds")}

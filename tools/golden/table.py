@@ -38,7 +38,7 @@ def _of_kind(kind: str, records: list[dict]) -> str:
         counted["law"] = Counter(_law(one["system"]) for one in records)
         counted["release"] = Counter(one["system"]["release"] for one in records)
         counted["preload"] = Counter(_any(one["system"], "preload") for one in records)
-        counted["damping of stops"] = Counter(_any(one["system"], "c_stop") for one in records)
+        counted["stop damping"] = Counter(_any(one["system"], "c_stop") for one in records)
     if kind == "births":
         counted["born"] = Counter(one["born"] for one in results)
     if not kind.endswith("curves"):
@@ -56,7 +56,7 @@ def _of_kind(kind: str, records: list[dict]) -> str:
         if errors:
             counted["points"]["without an error"] = sum(e is None for e in errors)
     title = f"{kind}: {len(records)}" + (f", {len(results)} {_PARTS[kind]}" if kind in _PARTS else "")
-    return "\n".join([title, *(f"  {name:17}{_line(one)}" for name, one in counted.items() if one), ""])
+    return "\n".join([title, *(f"  {name:15}{_line(one)}" for name, one in counted.items() if one), ""])
 
 
 _PARTS = {
