@@ -187,17 +187,22 @@ def test_the_comparison_sees_what_a_curve_lost(kind, name):
         assert len(curves.compared(record, changed, made)) > 0
 
 
-def test_the_comparison_sees_what_a_search_lost():
-    record = records.read("searches")[FEW["searches"][0]]
+@pytest.mark.parametrize(
+    "kind, name",
+    [("searches", FEW["searches"][0]), *slow_cases(("compliant_searches", "compliant 1.100003.0, one_mass"))],
+)
+def test_the_comparison_sees_what_a_search_lost(kind, name):
+    record = records.read(kind)[name]
     found, rng = searches.searched(record), np.random.default_rng(1)
     fewer, moved = copy.deepcopy(record["result"])[:-1], copy.deepcopy(record["result"])
     moved[-1]["parent"] += 1
     assert all(searches.compared(record, changed, found, rng) for changed in (fewer, moved))
 
 
+@pytest.mark.parametrize("kind", ["windows", "compliant_windows"])
 @pytest.mark.slow
-def test_the_comparison_sees_a_window_that_moved():
-    record = next(iter(records.read("windows").values()))
+def test_the_comparison_sees_a_window_that_moved(kind):
+    record = next(iter(records.read(kind).values()))
     found = windows.windows_in(records.FOLDER / record["file"])
     changed = copy.deepcopy(record["result"])
     k = next(k for k, window in enumerate(changed["windows"]) if window["ends"][0]["type"] == "graze")

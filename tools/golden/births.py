@@ -20,10 +20,10 @@ def born_cases():
     for omega in (0.63, 0.56, 0.53, 0.44):
         yield f"paper, omega = {omega}", PAPER.replace(omega=omega), 4
     for constant in (-2.0, -3.0):
-        one = vs.Oscillator.named(
+        system = vs.Oscillator.named(
             "one_mass", k=1, zeta=0.1, F=1, omega=0.8, R=0.8, b=1, tau=0, constant=constant, stops="right"
         )
-        yield f"one mass, constant = {constant}", one, 3
+        yield f"one mass, constant = {constant}", system, 3
     seed = 0
     while True:
         model = MODELS[seed % len(MODELS)]
@@ -72,6 +72,6 @@ def all_onsets(report) -> list[dict]:
         if not empty or without < WITHOUT:
             without += empty
             result.append(made)
-            report(f"{made['name']}: {[one and one['parameters'] for one in made['result']]}")
+            report(f"{made['name']}: {[onset and onset['parameters'] for onset in made['result']]}")
         if len(result) - without == ONSETS:
             return result

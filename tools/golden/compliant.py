@@ -80,7 +80,7 @@ def ends_of_contacts() -> dict:
         "stop that has not relaxed": (slow | {"release": "force"}, "R", "c_stop", (1, 12)),
         "stop that is met before it is out": (met_again | {"release": "force"}, "LR", "c_stop_left", (45, 70)),
     }
-    return {name: (vs.Oscillator.named("one_mass", **given), *case) for name, (given, *case) in cases.items()}
+    return {name: (vs.Oscillator.named("one_mass", **numbers), *case) for name, (numbers, *case) in cases.items()}
 
 
 def named_cases():
@@ -107,8 +107,8 @@ def search_record(record: dict) -> dict:
         if count > MOST_REACHED:
             raise LookupError("too many branches")
 
-    found = searches.searched(record, progress)
-    return record | {"result": searches.result_of(found, np.random.default_rng(0))}
+    reached = searches.searched(record, progress)
+    return record | {"result": searches.result_of(reached, np.random.default_rng(0))}
 
 
 def filled(kind: str, make, named, drawn, report) -> list[dict]:
@@ -151,7 +151,7 @@ def all_searches(report) -> list[dict]:
 def all_curves(known: list[dict], report) -> list[dict]:
     """From special points of the branches `known`, those types first that are met seldom."""
     rng, counted, types, result = np.random.default_rng(drawing.SEED), collections.Counter(), collections.Counter(), []
-    points = [(one, *point) for one in known for point in enumerate(one["result"]["special"])]
+    points = [(record, *point) for record in known for point in enumerate(record["result"]["special"])]
     points = [points[i] for i in rng.permutation(len(points)) if points[i][2]["type"] in CURVES]
     while points:
         points.sort(key=lambda point: types[point[2]["type"]])
