@@ -8,10 +8,9 @@ from golden import answers, checking, figures, files, records, shown, sweeps
 from golden.drawn import described
 from golden.scenes import computed
 
-CASES = {"sweeps": 25, "contact_windows": 3, "files": 15, "figures": 91, "answers": 21}
+CASES = {"sweeps": 25, "files": 15, "figures": 91, "answers": 21}
 FAST = {  # those that the fast tests compare
     "sweeps": ("section alone, from a state", "followed up and down", "attractors of random starts"),
-    "contact_windows": (),
     "files": ("sweep", "unfinished"),
     "figures": (
         'vs.plot(data["sweep"])',
@@ -118,14 +117,6 @@ def test_the_comparison_of_figures_sees():
         figure = figures.figure_of(record)
         change(figure.axes[0])
         assert shown.different(record["result"], [described(figure)]), name
-
-
-@pytest.mark.slow
-def test_the_comparison_of_windows_with_contacts_sees():
-    record = records.read("contact_windows")["an elastic stop, in b"]
-    assert len(record["result"]["windows"]) == 7
-    changed = record | {"scene": record["scene"].replace("k_stop: 29.0", "k_stop: 29.00001")}
-    assert len(checking.compared("contact_windows", changed)) >= 7
 
 
 def test_the_comparison_of_answers_sees():

@@ -14,7 +14,6 @@ MADE = {  # kind -> its records, made now; in the order in which one kind needs 
     "searches": making.all_searches,
     "windows": sweeps.all_windows,
     "sweeps": front.all_sweeps,
-    "contact_windows": front.all_contact_windows,
     "files": front.all_files,
     "figure_data": front.all_figure_data,
     "figures": front.all_figures,

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import yaml
-from golden import answers, contact_windows, datasets, figures, files, records, scenes, shown, sweeps, windows
+from golden import answers, datasets, figures, files, records, scenes, shown, sweeps
 from support.kinds_of_files import COMPLIANT, KINDS
 
 import vibro_sweep as vs
@@ -41,18 +41,6 @@ def _sweep(case: dict, report) -> dict:
     kept = sum(len(numbers["at"]) for numbers in result["numbers"].values())
     report(f"{case['name']}: {kept} numbers of {len(result['numbers'])} variables")
     return {"name": case["name"], "scene": text, "result": result}
-
-
-def all_contact_windows(report) -> list[dict]:
-    return [_windows(case, report) for case in named("contact_windows")]
-
-
-def _windows(case: dict, report) -> dict:
-    text, name = yaml.safe_dump(case["scene"], sort_keys=False), case["parameter"]
-    values, result = case["scene"]["sweep"][name], windows.result_of(contact_windows.windows_in(text))
-    report(f"{case['name']}: {len(result['windows'])} windows")
-    bounds = [values["start"], values["stop"]]
-    return {"name": case["name"], "scene": text, "parameter": name, "bounds": bounds, "result": result}
 
 
 def all_files(report) -> list[dict]:

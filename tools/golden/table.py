@@ -5,7 +5,6 @@ from collections import Counter
 from golden import records
 from golden.motions import system_of
 
-import vibro_sweep as vs
 from tools.golden import table_of_simulations
 
 KINDS = (  # of which the table tells
@@ -17,7 +16,7 @@ WITHOUT_POINTS = ("windows", "compliant_windows", "births", "onsets")
 
 def table() -> str:
     made = [kind for kind in KINDS if (records.FOLDER / f"{kind}.jsonl.gz").exists()]
-    head = f"The golden record, made by version {vs.__version__}: PYTHONPATH=tests python -m tools.golden\n\n"
+    head = "The golden record: PYTHONPATH=tests python -m tools.golden. What made it, and what it leaves out: notes.txt\n\n"
     return head + "\n".join(_of_kind(kind, list(records.read(kind).values())) for kind in made)
 
 
