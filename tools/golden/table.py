@@ -16,7 +16,7 @@ WITHOUT_POINTS = ("windows", "compliant_windows", "births", "onsets")
 
 def table() -> str:
     made = [kind for kind in KINDS if (records.FOLDER / f"{kind}.jsonl.gz").exists()]
-    head = "The golden record: PYTHONPATH=tests python -m tools.golden. What made it, and what it leaves out: notes.txt\n\n"
+    head = "The golden record: PYTHONPATH=tests python -m tools.golden. Its origin and its gaps: notes.txt\n\n"
     return head + "\n".join(_of_kind(kind, list(records.read(kind).values())) for kind in made)
 
 
