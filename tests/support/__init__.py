@@ -14,5 +14,5 @@ def slow_cases(*cases):
 
 
 def path_with(folder: Path) -> str:
-    """PYTHONPATH of a program that imports from this folder, and the package from where this one has it."""
-    return os.pathsep.join([str(folder), *filter(None, [os.environ.get("PYTHONPATH")])])
+    """PYTHONPATH of a program that imports from this folder and from tests/, and the package from where it is here."""
+    return os.pathsep.join([str(folder), str(ROOT / "tests"), *filter(None, [os.environ.get("PYTHONPATH")])])

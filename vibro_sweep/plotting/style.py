@@ -37,7 +37,7 @@ STYLE = {
 
 INK = "#1a1a2e"
 FAINT = "#8a8a96"
-# Colours that stand side by side in a legend are distinct to readers with any colour vision (tests/test_colours.py).
+# Colours that stand side by side in a legend are distinct with any colour vision (tests/pictures/test_colours.py).
 EXPONENTS = ("#b2182b", "#2f8fd8", "#1a1a5e", "#e0a030")  # lambda_1 .. lambda_4
 CHAOS = "#fbe3dc"  # the tint where lambda_1 > 0
 NEUTRAL = "#f7f7f7"  # where it does not differ from 0

@@ -1,6 +1,6 @@
 """The first contacts with compliant stops of random oscillators: as exact as rounding the data allows.
 
-`python tests/test_compliant_contacts.py FIRST LAST` compares the oscillators FIRST ... LAST - 1, a line for each;
+`python tests/accuracy/test_compliant_contacts.py FIRST LAST` compares the oscillators FIRST ... LAST - 1, a line each;
 tests/data/compliant_contacts.log is what it printed.
 """
 

@@ -1,6 +1,7 @@
 """Flights of any number of masses past a stop at 10^-1 .. 10^-15 of the clearance: no contact missed, none invented.
 
-`pytest -m soak tests/test_near_grazes.py` has 10^5 flights for each number of masses: tests/data/near_grazes.log.
+`pytest -m soak tests/accuracy/test_near_grazes.py` has 10^5 flights for each number of masses:
+tests/data/near_grazes.log.
 """
 
 import numpy as np

@@ -1,6 +1,6 @@
 """Any value for any argument of any public function: a result, or one message that says what is wrong.
 
-`pytest -m soak -s tests/test_any_arguments.py` has all of them: tests/data/arguments.log.
+`pytest -m soak -s tests/scenes/test_any_arguments.py` has all of them: tests/data/arguments.log.
 """
 
 import os

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from support import ROOT
 
 import vibro_sweep as vs
 from vibro_sweep.model.files import FileError
@@ -84,7 +85,7 @@ def objects():
         "special point": next(one for one in branch.special if one.type == "pitchfork"),
         "mapping": vs.discontinuity_map(SYSTEM),
         "born": vs.born_at_grazing(SYSTEM)[0],
-        "scene": vs.load_scene(Path(__file__).parents[1] / "configs" / "quickstart.yaml"),
+        "scene": vs.load_scene(ROOT / "configs" / "quickstart.yaml"),
         "dataset": vs.sweep(SYSTEM, {"b": [0.4]}, observe=["section"], transient=10, record=10),
     }
 

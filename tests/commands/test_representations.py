@@ -1,13 +1,11 @@
 """What a prompt and a notebook show of objects: ten lines at most, with what matters, and the names of all numbers."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
+from support import ROOT
 
 import vibro_sweep as vs
 
-ROOT = Path(__file__).parents[1]
 SYSTEM = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=0.4)
 CHAIN = vs.Oscillator.named("chain", m=[1] * 6, k=[1] * 7, c=[0.1] * 7, force=[1, 0, 0, 0, 0, 0], omega=1, R=0.5, b=0.3)
 SIXTEEN = np.random.default_rng(16).normal(size=(16, 16))

@@ -1,6 +1,6 @@
 """Contacts between stiffly and softly held masses, and far stops: as exact as rounding the data allows.
 
-`python tests/test_stiff_contacts.py FIRST LAST` compares the oscillators FIRST ... LAST - 1, a line for each.
+`python tests/accuracy/test_stiff_contacts.py FIRST LAST` compares the oscillators FIRST ... LAST - 1, a line for each.
 """
 
 import sys

@@ -1,7 +1,7 @@
 """Random oscillators over the whole allowed range: the first events of each orbit against exact flights.
 
-Orbit number n is always the same one. `python tests/test_search.py FIRST LAST [WORKERS]` checks the orbits FIRST ...
-LAST - 1, prints one line of JSON for each and a table at the end.
+Orbit number n is always the same one. `python tests/accuracy/test_search.py FIRST LAST [WORKERS]` checks orbits
+FIRST ... LAST - 1, prints one line of JSON for each and a table at the end.
 """
 
 import json

@@ -1,6 +1,6 @@
 """Exponents with compliant stops: of periodic orbits against eighty digits, and their sum against its exact value.
 
-`python tests/test_compliant_exponents.py FIRST LAST` compares the oscillators FIRST ... LAST - 1, and
+`python tests/accuracy/test_compliant_exponents.py FIRST LAST` compares the oscillators FIRST ... LAST - 1, and
 `relaxing FIRST LAST` such that are touched while they relax; `sums FIRST LAST` computes such planes, a line for each;
 tests/data/compliant_exponents.log is what they printed.
 """
