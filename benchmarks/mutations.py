@@ -1,4 +1,4 @@
-"""Lines of engine/ and analysis/, drawn by a seed, are changed one at a time: the first test that fails with each.
+"""Lines of ROOMS, drawn by a seed, are changed one at a time: the first test that fails with each.
 
 python benchmarks/mutations.py --work FOLDER [--lines 60] [--seed 28] [--only 3 17] [--log FILE]
 
@@ -24,6 +24,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 RUN = str(ROOT / "benchmarks" / "chosen_tests.py")
+ROOMS = ("analysis", "driver", "engine", "model")  # of the package
 FIRST = 40  # tests that are collected first
 CHANGES = {
     "+": ["-"], "-": ["+"], "*": ["/"], "/": ["*"], "//": ["/"], "+=": ["-="], "-=": ["+="], "*=": ["/="], "/=": ["*="],
@@ -53,7 +54,7 @@ def changes(text: str) -> dict[int, list[tuple[int, str, str]]]:
 
 def drawn(home: Path, count: int, seed: int) -> list[tuple[str, int, int, str, str]]:
     """File, line, column, what stands there and what to put in its place."""
-    files = sorted(p for room in ("engine", "analysis") for p in (home / "vibro_sweep" / room).rglob("*.py"))
+    files = sorted(p for room in ROOMS for p in (home / "vibro_sweep" / room).rglob("*.py"))
     lines = {(f.relative_to(home).as_posix(), row): c for f in files for row, c in changes(f.read_text()).items()}
     rng = random.Random(seed)
     return [(*line, *rng.choice(lines[line])) for line in rng.sample(list(lines), count)]
