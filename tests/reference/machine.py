@@ -1,0 +1,118 @@
+"""A machine as the references see it: masses, springs, dampers, forces, lists of contacts and of dry friction.
+
+    M x'' + C x' + K x = constant + sum over harmonics h of (sine_h sin(h phi) + cosine_h cos(h phi))
+                         + impulses and forces of the contacts + friction forces,      phi = omega t + tau
+
+All numbers count as exact. `machine_of` makes this record of the package's `system.linear`, and is the only place in
+the references that knows the names there.
+"""
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+
+class Stop(NamedTuple):
+    """A stop, which the gap g = normal . x does not pass: side (g - place) <= 0.
+
+    Rigid: with a coefficient of restitution R. Compliant (R is None): at the depth delta = side (g - place) the force
+    k delta + c delta' + p acts on the gap, away from the stop, until delta = 0, or (by_force) until it is zero.
+    """
+
+    side: int
+    place: float
+    R: float | None = None
+    k: float = 0.0
+    c: float = 0.0
+    p: float = 0.0
+    by_force: bool = False
+
+    @property
+    def relaxes(self) -> bool:
+        """Whether the stop comes back slowly after a contact."""
+        return self.R is None and self.by_force and self.c > 0
+
+
+class Contact(NamedTuple):
+    normal: Sequence[float]
+    stops: tuple[Stop, ...]  # the right one (side +1) before the left one
+
+
+class Friction(NamedTuple):
+    """Dry friction between the masses and a belt: w = direction . x' - belt_speed is the velocity of the slip."""
+
+    direction: Sequence[float]
+    friction_force: float
+    static_force: float
+    belt_speed: float = 0.0
+
+
+class Harmonic(NamedTuple):
+    order: int
+    sine: Sequence[float]
+    cosine: Sequence[float]
+
+
+class Machine(NamedTuple):
+    M: Sequence[Sequence[float]]
+    K: Sequence[Sequence[float]]
+    C: Sequence[Sequence[float]]
+    constant: Sequence[float]
+    harmonics: tuple[Harmonic, ...] = ()
+    omega: float = 1.0  # without harmonics: a clock
+    tau: float = 0.0
+    contacts: tuple[Contact, ...] = ()
+    friction: tuple[Friction, ...] = ()
+
+    @property
+    def masses(self) -> int:
+        return len(self.M)
+
+
+class Element(NamedTuple):
+    """What acts on the masses by itself: a stop of a contact, or a friction element; `number` counts from 1."""
+
+    number: int
+    row: list  # of delta' = row . x' of a stop, of w = row . x' - belt_speed of friction; the force acts along -row
+    law: Stop | Friction
+
+    @property
+    def rigid(self) -> bool:
+        return isinstance(self.law, Stop) and self.law.R is not None
+
+    @property
+    def compliant(self) -> bool:
+        return isinstance(self.law, Stop) and self.law.R is None
+
+    @property
+    def rubs(self) -> bool:
+        return isinstance(self.law, Friction)
+
+
+def elements_of(machine: Machine) -> list[Element]:
+    """In the order in which they have their turn at one instant: contacts by number, then friction."""
+    stops = [
+        Element(i, [stop.side * a for a in contact.normal], stop)
+        for i, contact in enumerate(machine.contacts, 1)
+        for stop in contact.stops
+    ]
+    return stops + [Element(i, list(friction.direction), friction) for i, friction in enumerate(machine.friction, 1)]
+
+
+def machine_of(linear) -> Machine:
+    """The machine of a `vs.types.Linear`, or of anything with the same names."""
+    stops = []
+    for side, end in ((1, "high"), (-1, "low")):
+        place, R, k, c, p = (getattr(linear, f"{name}{end}", 0.0) for name in ("", "R_", "k_", "c_", "p_"))
+        if not math.isinf(place):
+            law = {"k": k, "c": c, "p": p, "by_force": bool(linear.by_force)} if k > 0 else {"R": R}
+            stops.append(Stop(side, place, **law))
+    rows = {name: [list(row) for row in getattr(linear, name)] for name in "MKC"}
+    return Machine(
+        **rows,
+        constant=list(linear.constant),
+        harmonics=(Harmonic(1, list(linear.sine), list(linear.cosine)),),
+        omega=linear.omega,
+        tau=linear.tau,
+        contacts=(Contact(list(linear.normal), tuple(stops)),),
+    )
