@@ -116,7 +116,7 @@ class Motion:
         self.events, self.rests, self.contacts, self.section, self.places = [], [], [], [], []
         self.taken, self.started = arb(0), False
         self.decided = set()  # elements of the last event, whose guards may begin with a zero
-        self.fastest = arb(0)  # speed of a mass at an event, so far
+        self.fastest = arb(0)  # speed of a mass so far, by samples
         self.modes = None
 
     def value(self, row):
@@ -144,6 +144,7 @@ class Motion:
                 u, hit = last, None
             self.keep_sections(phase.flow, u, period)
             self.keep_contacts(phase, (u / phase.flow.h).mid())
+            self.fastest = max(self.fastest, arb(phase.flow.fastest(self.y, float(u / phase.flow.h))))
             self.y, self.t = phase.flow.at(self.y, u), (self.t + u).mid()
             self.decided = set()
             if hit is not None:

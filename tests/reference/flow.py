@@ -182,6 +182,9 @@ class Flow:
         while mpf(REACH) ** self.order / mp.factorial(self.order) > mp.eps / (1 + rate):
             self.order += 1
         self.step = (A * self.h).exp().mid()
+        # speeds of the masses at PARTS times within a step, as rows of y
+        steps = [(A * (self.h * (part + 1) / PARTS)).exp().tolist()[1 : 2 * N : 2] for part in range(PARTS)]
+        self.speeds = np.array([[[float(a) for a in row] for row in rows] for rows in steps])
         self.names, self.tables, self.floats = list(functions), {}, {}
         for name, row in functions.items():
             self.add(name, row)
@@ -209,6 +212,11 @@ class Flow:
         parts = np.abs(d := c @ shifts(self.order))  # (PARTS, functions, order): powers of u - middle of each part
         least = (d[:, :, 0] - parts[:, :, 1:].sum(2)).min(0)
         return [name for name, a, size in zip(self.names, least, sizes, strict=True) if a <= 1e-12 * size.sum()]
+
+    def fastest(self, y, part):
+        """The largest speed of a mass, among samples, within this part of a step."""
+        samples = np.abs(self.speeds[: int(PARTS * part)] @ floats_of(y))
+        return samples.max() if samples.size else 0.0
 
     def at(self, y, u):
         """y after the time u <= h."""
