@@ -6,7 +6,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from mpmath import mp, mpf
-from reference.any_naive import simulate
+from reference.events import simulate
+from reference.machine import machine_of
 from support import slow_cases
 from support.any_oscillators import drawn
 
@@ -56,13 +57,14 @@ def errors_of_impacts(system, state, orbit, seed, moves=3):
     of impacts.
     """
     count, rng = fast_impacts(orbit), np.random.default_rng(seed)
-    impacts, _, _ = simulate(system.linear, state, impacts=count)
-    others = [simulate(*moved(system.linear, state, rng), impacts=count)[0] for _ in range(moves)]
+    impacts = simulate(machine_of(system.linear), state, impacts=count).impacts
+    others = [moved(system.linear, state, rng) for _ in range(moves)]
+    others = [simulate(machine_of(q), x, impacts=count).impacts for q, x in others]
     largest = {"t": 0.0, "v1": 0.0, "x": 0.0}
     for i, (hit, found) in enumerate(zip(impacts, orbit.impacts[:count], strict=True)):
         assert hit.side == found["side"]
         moved_by = {"t": [other[i].t - hit.t for other in others], "v1": [other[i].v - hit.v for other in others]}
-        for name, exact in (("t", hit.t), ("v1", hit.v)):
+        for name, exact in (("t", hit.t), ("v1", hit.side * hit.v)):
             effect = 3 * sum(map(abs, moved_by[name])) / moves + math.ulp(float(exact))
             largest[name] = max(largest[name], float(abs(mpf(float(found[name])) - exact) / effect))
         size = max(abs(float(a)) for a in hit.y)
@@ -109,14 +111,14 @@ def test_sticking_and_release(masses):
     for seed, R in ((3, 0.3), (4, 0.0), (5, 0.4)):
         system, state = drawn(seed, masses, R=R, R_left=R, b=0.15)
         orbit = vs.simulate(system, state, 6)
-        _, sticking, section = simulate(system.linear, state, periods=6)
+        exact = simulate(machine_of(system.linear), state, periods=6)
         assert orbit.status == "ok"
-        long = [rest for rest in sticking if rest[1] - rest[0] > 1e-6]
+        long = [rest for rest in exact.rests if rest.t_off - rest.t_on > 1e-6]
         found = orbit.sticking[orbit.sticking["t_off"] - orbit.sticking["t_on"] > 1e-6]
-        np.testing.assert_allclose(found["t_on"], [float(rest[0]) for rest in long], rtol=0, atol=1e-9)
-        np.testing.assert_allclose(found["t_off"], [float(rest[1]) for rest in long], rtol=0, atol=1e-9)
-        assert list(found["side"]) == [rest[2] for rest in long]
-        np.testing.assert_allclose(orbit.section, np.array(section, float), rtol=0, atol=1e-9)
+        np.testing.assert_allclose(found["t_on"], [float(rest.t_on) for rest in long], rtol=0, atol=1e-9)
+        np.testing.assert_allclose(found["t_off"], [float(rest.t_off) for rest in long], rtol=0, atol=1e-9)
+        assert list(found["side"]) == [rest.side for rest in long]
+        np.testing.assert_allclose(orbit.section, np.array(exact.section, float), rtol=0, atol=1e-9)
         rests += len(long)
     assert rests > 5
 
@@ -130,7 +132,7 @@ def monodromy(q, state, periods):
             ends = []
             for sign in (1, -1):
                 start = [mpf(float(x)) + (sign * step if i == j else 0) for i, x in enumerate(state)]
-                ends.append(simulate(q, start, periods=periods, digits=30)[2][periods])
+                ends.append(simulate(machine_of(q), start, periods=periods).section[periods])
             columns.append([float((a - b) / (2 * step)) for a, b in zip(*ends, strict=True)])
     return np.array(columns).T
 

@@ -3,11 +3,13 @@
 import numpy as np
 import pytest
 from mpmath import mp, mpf
-from reference import any_naive, naive
+from reference import naive
 from reference.exponentials import Exponentials
 from reference.flights import Flight, Oscillator, Rest, taylor
+from reference.flow import FREE, HELD, matrix_of
 from reference.follow import DIGITS, Follower
-from reference.gmp import context, expm, from_gmp
+from reference.gmp import expm
+from reference.machine import machine_of
 
 import vibro_sweep as vs
 
@@ -30,10 +32,8 @@ def precision():
 def test_motion_solves_the_equations(params):
     """Closed forms of flight and rest against exponentials of the whole system."""
     o, t, u = Oscillator(params), mpf(2), mpf("0.7")
-    with context():
-        slow = any_naive.Oscillator(naive.linear_of(params), DIGITS)
-        flows = slow.free, slow.constrained
-        free, stuck = (mp.matrix([list(map(from_gmp, row)) for row in flow.A]) for flow in flows)
+    machine = machine_of(naive.linear_of(params))
+    free, stuck = matrix_of(machine), matrix_of(machine, (HELD, FREE))
     turn = o.turn(t)
     y = mp.matrix([*map(mpf, STATE), turn.imag, turn.real, 1])
     exact = expm(free * u) * y

@@ -6,7 +6,8 @@ Chains whose matrices are formed here; all their numbers may be moved, masses an
 import numpy as np
 import pytest
 from mpmath import mp, mpf
-from reference.any_naive import simulate
+from reference.events import simulate
+from reference.machine import machine_of
 from reference.naive_map import AnyNaiveMap
 from scipy.linalg import expm
 from support.any_oscillators import drawn
@@ -78,7 +79,8 @@ def test_derivatives_against_thirty_digits(case):
     numbers, start = system.numbers, [mpf(x) for x in STATE]
 
     def end_of(state=start, **moved):
-        return simulate(slow_chain(numbers | moved), state, periods=periods, digits=DIGITS)[2][-1]
+        machine = machine_of(slow_chain(numbers | moved))
+        return simulate(machine, state, periods=periods, digits=DIGITS).section[-1]
 
     columns = range(len(STATE)) if rests else (0, 3)
     exact = [

@@ -3,8 +3,20 @@
 Where a reference computes for long it works in these: a product of matrices is one call.
 """
 
-from flint import arb, arb_mat, arb_poly
+from contextlib import contextmanager
+
+from flint import arb, arb_mat, arb_poly, ctx
 from mpmath import mp, mpf
+
+
+@contextmanager
+def precision():
+    """Balls in the working precision of mpmath."""
+    before, ctx.prec = ctx.prec, mp.prec
+    try:
+        yield
+    finally:
+        ctx.prec = before
 
 
 def to_ball(x):

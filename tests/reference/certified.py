@@ -11,8 +11,9 @@ import math
 import numpy as np
 from mpmath import mp, mpf
 
-from reference.any_naive import Oscillator
-from reference.gmp import context, expm, from_gmp, to_gmp
+from reference.flow import matrix_of
+from reference.gmp import context, expm, to_gmp
+from reference.machine import machine_of
 
 REAL = np.longdouble
 UNIT = float(np.finfo(REAL).eps) / 2  # 2^-64 where longdouble is the x87 format
@@ -221,8 +222,8 @@ def of_paper(params, digits=40):
 
 def of_masses(q, digits=40):
     """Any oscillator (`Linear`), in the coordinates of its masses."""
-    with mp.workdps(digits), context():
-        A = mp.matrix([[from_gmp(a) for a in row] for row in Oscillator(q, digits).free.A])
+    with mp.workdps(digits):
+        A = matrix_of(machine_of(q))
         along = [mpf(0)] * A.rows
         along[0 : 2 * len(q.normal) : 2] = map(mpf, q.normal)
         return Reference(A, along, mpf(q.omega), mpf(q.tau), digits)

@@ -8,10 +8,10 @@ import math
 from itertools import pairwise
 from typing import NamedTuple
 
-from flint import arb, arb_mat, arb_poly, ctx
+from flint import arb, arb_mat, arb_poly
 from mpmath import mp, mpf
 
-from reference.balls import falling_root, from_ball, to_ball
+from reference.balls import falling_root, from_ball, precision, to_ball
 from reference.flow import FREE, PRESSED, Phases
 from reference.instants import Instant, order_and_sign
 
@@ -74,31 +74,26 @@ class Orbit(NamedTuple):
 
 def simulate(
     machine, state, periods=None, events=None, *, impacts=None, contacts=None, until=None, start_time=0, digits=30,
-    resolution=None, places=None, steps=math.inf,
+    resolution=None, places=(), steps=math.inf,
 ) -> Orbit:  # fmt: skip
     """The orbit from `state` (x1, v1, ..) on, until the first of what is said: over so many periods, until a time, or
     until so many events, impacts, or contacts that have ended; for so many steps at most.
 
-    resolution: what is told apart, as a part: times, speeds and loads that differ by less are the same. 10^-digits,
-    if it is left out; machines whose numbers are rounded to doubles may need 2^-50. places: by element, from 0 on, the
-    place s from which a stop relaxes.
+    resolution: what is told apart, as a part: times, speeds and loads that differ by less are the same; 10^-digits
+    if it is left out; numbers that are rounded to doubles may need 2^-50. places: those of `Orbit.places`, from
+    where stops relax at the start.
     """
     if all(stop is None for stop in (periods, events, impacts, contacts, until)):
         raise ValueError("say when to stop: periods, events, impacts, contacts or until")
-    before = ctx.prec
-    with mp.workdps(digits + 20):
-        ctx.prec = mp.prec
-        try:
-            small = to_ball(mpf(10) ** -digits if resolution is None else mpf(resolution))
-            motion = Motion(machine, state, start_time, small, places or {})
-            period = 2 * arb.pi() / to_ball(machine.omega)
-            ends = [arb.pos_inf()] if until is None else [to_ball(until)]
-            if periods is not None:
-                ends.append((motion.t + to_ball(periods) * period).mid())
-            limits = {"events": events, "rests": None, "contacts": contacts, "impacts": impacts}
-            return motion.go(min(ends), period.mid(), {name: n for name, n in limits.items() if n is not None}, steps)
-        finally:
-            ctx.prec = before
+    with mp.workdps(digits + 20), precision():
+        small = to_ball(mpf(10) ** -digits if resolution is None else mpf(resolution))
+        motion = Motion(machine, state, start_time, small, places)
+        period = (2 * arb.pi() / to_ball(machine.omega)).mid()
+        ends = [arb.pos_inf()] if until is None else [to_ball(until)]
+        if periods is not None:
+            ends.append((motion.t + to_ball(periods) * period).mid())
+        limits = {"events": events, "contacts": contacts, "impacts": impacts}
+        return motion.go(min(ends), period, {name: n for name, n in limits.items() if n is not None}, steps)
 
 
 class Motion:
@@ -109,9 +104,11 @@ class Motion:
         angle, angles = to_ball(machine.omega) * self.t + to_ball(machine.tau), []
         for harmonic in machine.harmonics:
             angles += (harmonic.order * angle).sin().mid(), (harmonic.order * angle).cos().mid()
-        later = [to_ball(places.get(e, 0)) for e in self.phases.place_of_s]
+        later = [to_ball(s) for s in places or [0] * len(self.phases.place_of_s)]
         self.y = arb_mat(self.phases.size, 1, [*map(to_ball, state), *angles, arb(1), *later])
-        self.began = {e: to_ball(s) for e, s in places.items() if s > 0}  # from where stops relax
+        self.began = {
+            e: s for e, s in zip(self.phases.place_of_s, later, strict=True) if s > 0
+        }  # from where stops relax
         self.touched, self.peaks, self.rest_since = {}, {}, {}
         self.events, self.rests, self.contacts, self.section, self.places = [], [], [], [], []
         self.taken, self.started = arb(0), False

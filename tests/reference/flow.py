@@ -12,7 +12,7 @@ import numpy as np
 from flint import arb, arb_mat
 from mpmath import mp, mpf
 
-from reference.balls import to_ball, to_balls
+from reference.balls import from_ball, precision, to_ball, to_balls
 from reference.machine import elements_of
 
 FREE, RELAXING, PRESSED, HELD = "free", "relaxing", "pressed", "held"
@@ -20,6 +20,14 @@ SLIP = {1: "slip+", -1: "slip-"}
 REACH = 4  # |A| times the length of a step
 PARTS = 8  # of a step, in each of which bounds are formed
 DEPENDENT = arb((1, -80))  # a row with no more than this part beside others depends on them
+
+
+def matrix_of(machine, modes=None):
+    """A of y' = A y in a phase, in mpmath; of free flight, if no modes are given."""
+    with precision():
+        phases = Phases(machine)
+        A = phases.phase(modes or (FREE,) * len(phases.elements)).flow.A
+        return mp.matrix([[from_ball(a) for a in row] for row in A.tolist()])
 
 
 class Phases:

@@ -1,4 +1,4 @@
-"""A slow and obvious simulator of the paper's oscillator, which the fast one is held against: any_naive.py does it.
+"""A slow and obvious simulator of the paper's oscillator, which the fast one is held against: events.py does it.
 
 `python tests/reference/naive.py --write` computes the reference sequences in tests/data/impacts.json anew (minutes).
 """
@@ -13,7 +13,8 @@ from typing import NamedTuple
 
 from mpmath import mp, mpf
 
-from reference import any_naive
+from reference.events import simulate as simulate_machine
+from reference.machine import machine_of
 
 REFERENCE = Path(__file__).parents[1] / "data" / "impacts.json"
 NAMES = ("mu_m", "mu_k", "zeta", "f2", "omega", "R", "b", "tau")
@@ -59,12 +60,12 @@ def simulate(params, state, periods=None, impacts=None, start_time=0, digits=40)
     floats count as the exact doubles.
     """
     with mp.workdps(digits + 10):
-        q = linear_of(params)
-    hits, sticking, section = any_naive.simulate(q, state, periods, impacts, start_time, digits)
+        machine = machine_of(linear_of(params))
+    orbit = simulate_machine(machine, state, periods, impacts=impacts, start_time=start_time, digits=digits)
     return NaiveOrbit(
-        [Impact(hit.t, hit.side, *hit.y[1:]) for hit in hits],
-        [tuple(at) for at in section],
-        [Sticking(*rest) for rest in sticking],
+        [Impact(hit.t, hit.side, *hit.y[1:]) for hit in orbit.impacts],
+        [tuple(at) for at in orbit.section],
+        [Sticking(*rest[:3]) for rest in orbit.rests],
     )
 
 
