@@ -104,7 +104,8 @@ class Phase:
         self.reactions = self.forces_that_hold(x2)
         for e, reaction in self.reactions.items():
             x2 = x2 - phases.push[e] * reaction
-        self.flow = Flow(self.matrix(x2), phases.N, self.guards())
+        self.guards = self.functions()
+        self.flow = Flow(self.matrix(x2), phases.N, self.guards)
 
     def forces_that_hold(self, x2):
         """The force of each held element, as a function of y: row . (x'' - M^-1 sum of row force) = 0 for all of them.
@@ -150,7 +151,7 @@ class Phase:
                 A[n][n], A[n][phases.one] = -k / c, -p / c
         return arb_mat(A).mid()
 
-    def guards(self):
+    def functions(self):
         phases, guards = self.phases, {}
         for e, (element, mode) in enumerate(zip(phases.elements, self.modes, strict=True)):
             law = element.law
