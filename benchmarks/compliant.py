@@ -14,7 +14,8 @@ import shared  # noqa: F401
 from book import Goal, digits, main, table
 from engine import compute
 from peers import Solver
-from reference import compliant
+from reference.events import simulate
+from reference.machine import machine_of
 from timing import interleaved
 
 import vibro_sweep as vs
@@ -80,7 +81,7 @@ def measure(quick: bool) -> dict:
         system = system_of(numbers)
         section = vs.simulate(system, [0] * (2 * system.masses), TRANSIENT).section
         states = np.array(section[-LANES:])
-        exact = compliant.simulate(system.linear, states[0], contacts=COUNT).contacts
+        exact = simulate(machine_of(system.linear), states[0], contacts=COUNT).contacts
         exact = np.array([float(one.t_touch) for one in exact])
         for exponents in (False, True) if name in EXPONENTS else (False,):
             engine_solver = ours(numbers, states, exponents)

@@ -5,7 +5,8 @@ import math
 import numpy as np
 import pytest
 from mpmath import mp
-from reference import compliant
+from reference.events import simulate
+from reference.machine import machine_of
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 from support.soft_stops import ELASTIC, FIELDS, FREE, PAPER, one_mass
@@ -23,7 +24,7 @@ def test_first_contacts_to_rounding(stiffness, release, ratio, preload):
     stop = dict(k_stop=stiffness, c_stop=2 * ratio * math.sqrt(stiffness), preload=preload, release=release)
     system = one_mass(**ELASTIC, **stop)
     found = vs.simulate(system, (0, 0), 20).contacts[:4]
-    exact = compliant.simulate(system.linear, [0.0, 0.0], contacts=4).contacts
+    exact = simulate(machine_of(system.linear), [0.0, 0.0], contacts=4).contacts
     for name in FIELDS:
         wanted = np.array([float(getattr(one, name)) for one in exact])
         scale = found["t_touch"] if name.startswith("t") else np.abs(wanted).max()
@@ -232,7 +233,7 @@ def test_a_start_inside_a_stop_may_leave_it_at_once():
     """By force, and sooner than the stop relaxes."""
     stop = dict(k_stop=125, c_stop=1, preload=0.05, release="force")
     system, start = one_mass(**ELASTIC, **stop), (1 + 2e-5, -0.1)
-    orbit, exact = vs.simulate(system, start, 5), compliant.simulate(system.linear, list(start), contacts=1)
+    orbit, exact = vs.simulate(system, start, 5), simulate(machine_of(system.linear), list(start), contacts=1)
     assert orbit.status == "ok"
     for name in FIELDS:
         assert orbit.contacts[name][0] == pytest.approx(float(getattr(exact.contacts[0], name)), rel=1e-13), name

@@ -5,7 +5,8 @@ import math
 import numpy as np
 import pytest
 from mpmath import mp, mpf
-from reference import compliant
+from reference.events import simulate
+from reference.machine import machine_of
 from support.soft_stops import ELASTIC, PAPER, one_mass
 
 import vibro_sweep as vs
@@ -23,11 +24,11 @@ def test_multipliers_against_differences_in_forty_digits(stop):
     assert period > 0
     start, columns = [float(data.x1[0, -1]), float(data.v1[0, -1])], []
     with mp.workdps(50):
-        end = compliant.simulate(system.linear, start, periods=period).section[period]
+        end = simulate(machine_of(system.linear), start, periods=period).section[period]
         for j in range(2):
             beside = [mpf(one) for one in start]
             beside[j] += mpf(10) ** -20
-            moved = compliant.simulate(system.linear, beside, periods=period).section[period]
+            moved = simulate(machine_of(system.linear), beside, periods=period).section[period]
             columns.append([float((a - b) * mpf(10) ** 20) for a, b in zip(moved, end, strict=True)])
     exact = np.linalg.eigvals(np.array(columns).T)
     found = data.multiplier_re.values[0] + 1j * data.multiplier_im.values[0]
@@ -85,11 +86,11 @@ def test_volumes_through_stops_that_relax(release, c_stop):
     start, step = [mpf("0.01"), mpf("1.5")], mpf(10) ** -30
     how = dict(periods=1, digits=80)
     with mp.workdps(80):
-        end = compliant.simulate(system.linear, start, **how)
+        end = simulate(machine_of(system.linear), start, **how)
         columns = []
         for j in range(2):
             beside = [one + step * (i == j) for i, one in enumerate(start)]
-            moved = compliant.simulate(system.linear, beside, **how).section[1]
+            moved = simulate(machine_of(system.linear), beside, **how).section[1]
             columns.append([(a - b) / step for a, b in zip(moved, end.section[1], strict=True)])
         wanted = float(mp.log(abs(mp.det(mp.matrix(columns)))))
     exponents = vs.lyapunov(system, [float(one) for one in start], 0, 1)

@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 from mpmath import mp
-from reference.compliant_orbits import ContactMap, ContactOrbit
+from reference.closed_orbit import ClosedOrbit, contacts_of
+from reference.conditions import Map
+from reference.machine import machine_of
 from reference.normal_forms import third_order
 from scipy.linalg import expm
 from support import slow_cases
@@ -48,13 +50,11 @@ def test_coefficient_agrees_with_differences_of_the_map_in_45_digits(name, kind,
     n = len(v)
     before = expm(-0.6 * flow(q).B * flight)[:n, :n] @ (v * np.repeat([1.0, q.omega], n // 2))
     state = orbit_of(system, s).sample([start])[0]
-    moved = q._replace(tau=float(q.tau + q.omega * start))
-    exact = ContactOrbit(moved, s.sides, s.half_periods / 2, s.sigma)
-    state, times, _ = exact.solve(state, [0.6 * flight, 0.6 * flight + release - touch])
+    machine = machine_of(q._replace(tau=float(q.tau + q.omega * start)))
+    exact = ClosedOrbit(machine, contacts_of(machine, s.sides), s.half_periods / 2, s.sigma)
+    state, times = exact.solve(state, [0.6 * flight, 0.6 * flight + release - touch])
     with mp.workdps(45):
         mu = -1 if kind == "flip" else mp.expj(critical_angle(s))
-        expected = float(third_order(ContactMap(exact, [*state[::2], *state[1::2]], times), mu)) / (
-            3 if kind == "flip" else 1
-        )
+        expected = float(third_order(Map(exact, state, times), mu)) / (3 if kind == "flip" else 1)
     assert found == pytest.approx(expected * np.linalg.norm(before) ** 2, rel=1e-7)
     assert special.criticality == ("super" if expected < 0 else "sub")

@@ -7,7 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from reference.compliant_orbits import ContactOrbit
+from reference.closed_orbit import ClosedOrbit, contacts_of
+from reference.machine import machine_of
 from support import slow_cases
 from support.compliant_bifurcations import PAPER, one_mass, paper
 
@@ -27,9 +28,10 @@ def in_thirty_digits(orbit):
     times = np.column_stack([t, t + contacts["t_release"] - contacts["t_touch"]])[order].ravel()
     q = orbit.system.linear
     pulled = bool(np.all(q.c_high * contacts["v_release"] + q.p_high < 0))
-    exact = ContactOrbit(q, contacts["side"][order], orbit.period, pulled=pulled)
-    state, known, multipliers = exact.solve(orbit.state, times)
-    multipliers = np.array([complex(one) for one in multipliers])
+    machine = machine_of(q)
+    exact = ClosedOrbit(machine, contacts_of(machine, contacts["side"][order], pulled), orbit.period)
+    state, known = exact.solve(orbit.state, times)
+    multipliers = np.array([complex(one) for one in exact.multipliers(state, known)])
     found = [orbit.state, times, np.sort_complex(orbit.multipliers)]
     return found, [np.array(state, float), np.array(known, float), np.sort_complex(multipliers)]
 

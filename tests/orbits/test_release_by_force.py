@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 from mpmath import mp, mpf
-from reference.compliant_orbits import DIGITS, ContactOrbit
+from reference.closed_orbit import DIGITS, ClosedOrbit
+from reference.machine import machine_of
 from support import slow_cases
 from support.compliant_bifurcations import distance_in_digits
 
@@ -38,7 +39,7 @@ def touching_in_digits(special):
     """Multipliers with the least contact at a graze of the free motion: of (1 - c e_v e_g) M, since v' = -c gap."""
     q = special.orbit.system.linear
     with mp.workdps(DIGITS):
-        M = ContactOrbit(q, [], 1).closure(mp.matrix(2, 1))
+        M = ClosedOrbit(machine_of(q), [], 1).closure([0, 0], [])
         jump = mp.eye(2)
         jump[1, 0] = -mpf(float(q.c_high)) / mpf(float(q.M[0, 0]))
         return np.sort_complex(np.array(mp.eig(jump * M, left=False, right=False), complex))
@@ -138,7 +139,7 @@ def test_a_curve_of_grazes_says_where_a_corner_begins_with_a_flip():
     c, mu = point.parameters["c_stop"], None
     system = graze.orbit.system.replace(c_stop=c)
     with mp.workdps(DIGITS):
-        M = ContactOrbit(system.replace(**point.parameters).linear, [], 1).closure(mp.matrix(2, 1))
+        M = ClosedOrbit(machine_of(system.replace(**point.parameters).linear), [], 1).closure([0, 0], [])
         jump = mp.eye(2)
         jump[1, 0] = -mpf(c)
         mu = mp.eig(jump * M, left=False, right=False)

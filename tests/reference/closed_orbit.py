@@ -12,6 +12,7 @@ from mpmath import mp, mpf
 
 from reference.balls import from_ball, precision, to_ball
 from reference.flow import FREE, HELD, PRESSED, RELAXING, SLIP, Phases
+from reference.machine import elements_of
 
 DIGITS = 45
 CLOSED = mpf(10) ** -32  # the last change of Newton's method
@@ -36,9 +37,21 @@ KINDS = {
 class Leg(NamedTuple):
     """A flight to an event, and the event."""
 
-    flow: object
+    phase: object
     row: arb_mat
     jump: arb_mat  # D
+
+
+def contacts_of(machine, sides, pulled=False):
+    """The events of contacts with compliant stops of the first contact.
+
+    pulled: whether contacts with a preload end by their force where the stop's do, before the mass is back at the stop.
+    """
+    events = []
+    for e in (element_of(machine, side) for side in sides):
+        law = elements_of(machine)[e].law
+        events += ("touch", e), ("force" if law.relaxes and (law.p == 0 or pulled) else "release", e)
+    return events
 
 
 def element_of(machine, side, contact=1) -> int:
@@ -72,10 +85,10 @@ class ClosedOrbit:
                 guard, mode = KINDS[kind]
                 phase = phases.phase(modes)
                 row = phase.guards[guard, e]
-                self.legs.append(Leg(phase.flow, row, self.jump(kind, e, modes[e])))
+                self.legs.append(Leg(phase, row, self.jump(kind, e, modes[e])))
                 changes = {e: mode or modes[e]} | (others[0] if others else {})
                 modes = tuple(changes.get(i, old) for i, old in enumerate(modes))
-            self.last = phases.phase(modes).flow
+            self.last = phases.phase(modes)
 
     def jump(self, kind, e, before):
         phases, D = (
@@ -113,11 +126,11 @@ class ClosedOrbit:
                 change[place, column] = arb(1)
             now, last, F, J = self.begin, None, [], []
             for k, leg in enumerate([*self.legs, None]):
-                flow = self.last if leg is None else leg.flow
+                phase = self.last if leg is None else leg.phase
                 t = self.begin + self.length if leg is None else to_ball(u[n + k])
-                E = (flow.A * (t - now)).exp().mid()
-                y, change, rate = (E * y).mid(), (E * change).mid(), None
-                rate = flow.A * y
+                E = (phase.A * (t - now)).exp().mid()
+                y, change = (E * y).mid(), (E * change).mid()
+                rate = phase.A * y
                 for i in range(self.phases.size):
                     if leg is not None:
                         change[i, n + k] += rate[i, 0]
@@ -149,16 +162,29 @@ class ClosedOrbit:
         with mp.workdps(self.digits), precision():
             y, now = self.start(state), self.begin
             through = arb_mat([[int(i == j) for j in range(self.phases.size)] for i in range(self.phases.size)])
-            following = [*(leg.flow for leg in self.legs[1:]), self.last]
+            following = [*(leg.phase for leg in self.legs), self.last][1:]
             for leg, t, behind in zip(self.legs, map(to_ball, times), following, strict=True):
-                E = (leg.flow.A * (t - now)).exp()
+                E = (leg.phase.A * (t - now)).exp()
                 y, now = (E * y).mid(), t
-                before, after = leg.flow.A * y, behind.A * (leg.jump * y)
+                before, after = leg.phase.A * y, behind.A * (leg.jump * y)
                 slope = 1 / (leg.row * before)[0, 0]
                 S = leg.jump + (after - leg.jump * before) * leg.row * slope
                 y, through = (leg.jump * y).mid(), (S * E * through).mid()
             through = (self.last.A * (self.begin + self.length - now)).exp() * through
             return mp.matrix([[self.sigma * from_ball(through[i, j]) for j in self.at] for i in self.at])
+
+    def depth_and_speed(self, state, times, e, t):
+        """delta and delta' of a stop at a time of a flight."""
+        with mp.workdps(self.digits), precision():
+            y, now = self.start(state), self.begin
+            phase, t = self.last, to_ball(t)
+            for leg, event in zip(self.legs, map(to_ball, times), strict=True):
+                if t <= event:
+                    phase = leg.phase
+                    break
+                y, now = (leg.jump * (leg.phase.A * (event - now)).exp() * y).mid(), event
+            y = (phase.A * (t - now)).exp() * y
+            return [from_ball((row * y)[0, 0]) for row in (self.phases.depth(e), self.phases.speed(e))]
 
     def multipliers(self, state, times):
         """By falling size."""
@@ -172,11 +198,11 @@ class ClosedOrbit:
             y, now = self.start(state), self.begin
             for leg, t in zip(self.legs, map(to_ball, times), strict=True):
                 for _ in range(30):  # Newton's method for the time
-                    there = (leg.flow.A * (t - now)).exp() * y
-                    step = ((leg.row * there)[0, 0] / (leg.row * (leg.flow.A * there))[0, 0]).mid()
+                    there = (leg.phase.A * (t - now)).exp() * y
+                    step = ((leg.row * there)[0, 0] / (leg.row * (leg.phase.A * there))[0, 0]).mid()
                     t = (t - step).mid()
                     if abs(step) < arb(10) ** (6 - self.digits):
                         break
-                y, now = (leg.jump * (leg.flow.A * (t - now)).exp() * y).mid(), t
+                y, now = (leg.jump * (leg.phase.A * (t - now)).exp() * y).mid(), t
             y = (self.last.A * (self.begin + self.length - now)).exp() * y
             return [self.sigma * from_ball(y[place, 0]) for place in self.at]

@@ -7,6 +7,7 @@ A phase has one mode for each element (stop or friction): FREE, RELAXING (a free
 """
 
 import math
+from functools import cached_property
 
 import numpy as np
 from flint import arb, arb_mat
@@ -26,7 +27,7 @@ def matrix_of(machine, modes=None):
     """A of y' = A y in a phase, in mpmath; of free flight, if no modes are given."""
     with precision():
         phases = Phases(machine)
-        A = phases.phase(modes or (FREE,) * len(phases.elements)).flow.A
+        A = phases.phase(modes or (FREE,) * len(phases.elements)).A
         return mp.matrix([[from_ball(a) for a in row] for row in A.tolist()])
 
 
@@ -104,8 +105,11 @@ class Phase:
         self.reactions = self.forces_that_hold(x2)
         for e, reaction in self.reactions.items():
             x2 = x2 - phases.push[e] * reaction
-        self.guards = self.functions()
-        self.flow = Flow(self.matrix(x2), phases.N, self.guards)
+        self.A, self.guards = self.matrix(x2), self.functions()
+
+    @cached_property
+    def flow(self):
+        return Flow(self.A, self.phases.N, self.guards)
 
     def forces_that_hold(self, x2):
         """The force of each held element, as a function of y: row . (x'' - M^-1 sum of row force) = 0 for all of them.

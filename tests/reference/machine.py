@@ -9,7 +9,11 @@ the references that knows the names there.
 
 import math
 from collections.abc import Sequence
+from types import SimpleNamespace
 from typing import NamedTuple
+
+import numpy as np
+from mpmath import mpf
 
 
 class Stop(NamedTuple):
@@ -116,3 +120,17 @@ def machine_of(linear) -> Machine:
         tau=linear.tau,
         contacts=(Contact(list(linear.normal), tuple(stops)),),
     )
+
+
+def moved(linear, slopes, changes):
+    """A `vs.types.Linear`, moved by these changes along its derivatives: exact to their squares."""
+    numbers = {}
+    for name, value in linear._asdict().items():
+        terms = [(mpf(d), getattr(slope, name)) for d, slope in zip(changes, slopes, strict=True)]
+        if name == "by_force":
+            numbers[name] = bool(value)
+        elif isinstance(value, np.ndarray):
+            numbers[name] = value.astype(object) + sum(d * slope.astype(object) for d, slope in terms)
+        else:
+            numbers[name] = mpf(value) + sum((d * mpf(float(slope)) for d, slope in terms if slope), mpf(0))
+    return SimpleNamespace(**numbers)

@@ -4,7 +4,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from reference.compliant_bifurcations import Bifurcation
+from reference.closed_orbit import contacts_of, element_of
+from reference.conditions import Condition
+from reference.machine import machine_of, moved
 
 import vibro_sweep as vs
 from vibro_sweep.analysis.branches.special import bare
@@ -158,6 +160,10 @@ def distance_in_digits(special, pulled=False) -> tuple[np.ndarray, float]:
     conditions = CONDITIONS[special.type]
     if special.type == "split" and len(slopes) > 1:  # the end of a curve
         conditions = CONDITIONS[special.curve]
-    exact = Bifurcation(d.q, slopes, *d.of, conditions, d.touched, ANGLES.get(special.type), pulled)
+    machine, (sides, periods, sigma) = machine_of(d.q), d.of
+    exact = Condition(
+        lambda changes: machine_of(moved(d.q, slopes, changes)), len(slopes), contacts_of(machine, sides, pulled),
+        periods, sigma, conditions, [element_of(machine, side) for side in d.touched], ANGLES.get(special.type),
+    )  # fmt: skip
     off, change = exact.solve(*d.guess)
     return np.array(off), change

@@ -12,7 +12,8 @@ from types import SimpleNamespace
 
 import numpy as np
 from mpmath import mp, mpf
-from reference import compliant
+from reference.events import simulate
+from reference.machine import machine_of
 
 import vibro_sweep as vs
 from support.stiff_contacts import moved
@@ -22,7 +23,7 @@ COUNT = 20  # contacts compared
 MOVES = 4
 LEAST = 10.0  # errors allowed, in units of what rounding the data does
 CHAOS = 1e-8  # of a time
-STEPS = 10_000
+STEPS = 20_000
 FIELDS = ("t_touch", "t_release", "v_touch", "v_release", "max_penetration", "max_force")
 PERIODS = 20
 
@@ -72,7 +73,7 @@ def compared(seed):
     elif orbit.status != "ok" and len(found) < COUNT:  # ever shorter contacts, more than are followed
         end = found["t_release"][-1] * (1 + 1e-12) if len(found) else 0.0
     if not len(found):
-        exact = compliant.simulate(system.linear, start, contacts=1, until=end, steps=STEPS).contacts
+        exact = simulate(machine_of(system.linear), start, contacts=1, until=end, steps=STEPS).contacts
         return report | {"defect": "missed" if exact and exact[0].t_release < end * (1 - 1e-9) else ""}
     return report | judged(system, start, found, end)
 
@@ -82,10 +83,11 @@ def judged(system, start, found, end):
     with mp.workdps(50):
 
         def contacts_of(numbers, state):
-            return compliant.simulate(numbers, state, contacts=len(found), until=2 * end).contacts
+            return simulate(machine_of(numbers), state, contacts=len(found), until=2 * end).contacts
 
         rng, q = np.random.default_rng(1), system.linear
-        orbit = compliant.simulate(*moved_numbers(q, start, None), contacts=len(found), until=2 * end, steps=STEPS)
+        numbers, state = moved_numbers(q, start, None)
+        orbit = simulate(machine_of(numbers), state, contacts=len(found), until=2 * end, steps=STEPS)
         exact = orbit.contacts
         if orbit.given_up:
             found = found[: len(exact)]
@@ -110,7 +112,8 @@ def error_of_sections(seed, periods=6):
         rng, orbits = np.random.default_rng(1), []
         for i in range(1 + MOVES):
             numbers, state = moved_numbers(system.linear, start, rng if i else None)
-            orbits.append(np.array(compliant.simulate(numbers, state, periods=periods + 1e-9).section[1 : periods + 1]))
+            orbit = simulate(machine_of(numbers), state, periods=periods + 1e-9)
+            orbits.append(np.array(orbit.section[1 : periods + 1]))
         found = np.stack([data[name].values[0] for name in names], -1)
         effect = np.max([np.abs(one - orbits[0]).max(1) for one in orbits[1:]], 0)
         error = np.abs(found - orbits[0]).max(1)

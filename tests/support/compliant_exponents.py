@@ -1,7 +1,7 @@
 """Exponents of periodic orbits with compliant stops, as sweeps find them, against sixty digits.
 
 Of a random oscillator a sweep over the clearance finds attractors; the first periodic one with contacts counts. The
-reference (reference/compliant.py) makes it periodic to many digits by Newton's method, and differences of its orbits
+reference (reference/events.py) makes it periodic to many digits by Newton's method, and differences of its orbits
 give the monodromy matrix. Where stops relax at the section their places are numbers of the state, too: as many of
 the multipliers as there are states are compared, the largest ones; of a complex pair one may be the last of them.
 """
@@ -11,7 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 from mpmath import mp, mpf
-from reference import compliant
+from reference.events import simulate
+from reference.machine import machine_of
 
 import vibro_sweep as vs
 from vibro_sweep.model.state import coordinates
@@ -174,15 +175,17 @@ def multipliers(q, state, period, small):
     """
     masses, digits, step = len(q.normal), DIGITS + 2 * small, mpf(10) ** (STEP - small)
     with mp.workdps(digits + 20):
-        first = compliant.simulate(q, state, periods=period, digits=digits)
-        relaxing = [n for n in range(2) if first.places[period][n] > 0]
+        machine = machine_of(q)
+        first = simulate(machine, state, periods=period, digits=digits)
+        stops = len(first.places[period])
+        relaxing = [n for n in range(stops) if first.places[period][n] > 0]
         u = mp.matrix([*first.section[period], *(first.places[period][n] for n in relaxing)])
 
         def mapped(u):
-            places = [mpf(0), mpf(0)]
+            places = [mpf(0)] * stops
             for n, s in zip(relaxing, u[2 * masses :], strict=True):
                 places[n] = s
-            end = compliant.simulate(q, list(u[: 2 * masses]), periods=period, digits=digits, places=places)
+            end = simulate(machine, list(u[: 2 * masses]), periods=period, digits=digits, places=places)
             return mp.matrix([*end.section[period], *(end.places[period][n] for n in relaxing)])
 
         for _ in range(MOST_STEPS):

@@ -1,0 +1,101 @@
+"""Where a closed orbit fulfils conditions, in many digits: bifurcations, by Newton's method for all unknowns together.
+
+Unknowns are those of `ClosedOrbit`, times of turning points that touch a stop, angles of pairs on the unit circle, and
+the free numbers of the machine. Conditions on the matrix M of the orbit:
+
+    fold det(M - 1) = 0    flip, pitchfork det(M + 1) = 0    pair det(M - e^{i theta}) = 0
+    double 1, -1: the derivative of det(M - mu) by mu is 0 as well    cusp: w.F''(v, v) = 0, F v = 0, w.F = 0
+    third: the cubic coefficient of the normal form of a flip or a pair is 0, by differences of the map
+"""
+
+from mpmath import mp, mpf
+
+from reference.closed_orbit import DIGITS, ClosedOrbit
+from reference.normal_forms import third_order
+
+WIDE = mpf(10) ** -12  # step of differences
+THIRD, OF_THIRD = mpf(10) ** -12, 60  # step of third ones, and digits: stiff stops bend the map
+
+
+class Map:
+    """The map over the period of a closed orbit, of changes of the state at the section."""
+
+    def __init__(self, orbit, state, times):
+        self.orbit, self.centre, self.times = orbit, list(state), list(times)
+
+    def __call__(self, change):
+        end = self.orbit.image([a + b for a, b in zip(self.centre, change, strict=True)], self.times)
+        return mp.matrix([a - b for a, b in zip(end, self.centre, strict=True)])
+
+
+class Condition:
+    """machine_at: the machine for changes of the free numbers; events, periods, sigma: as of `ClosedOrbit`.
+
+    conditions : "fold", "flip", "pair", "double_1", "double_-1", "cusp", "third"
+    touches : elements, stops that turning points touch
+    angle : of a pair, where it is known; None: another unknown
+    """
+
+    def __init__(self, machine_at, free, events, periods, sigma=1, conditions=(), touches=(), angle=None):
+        self.machine_at, self.free, self.of = machine_at, free, (list(events), periods, sigma)
+        self.conditions, self.touches, self.angle = conditions, touches, angle
+        self.digits = OF_THIRD if "third" in conditions else DIGITS
+
+    def residual(self, u):
+        orbit = ClosedOrbit(self.machine_at(list(u[len(u) - self.free :])), *self.of, digits=self.digits)
+        n = len(orbit.at)
+        self.m = n + len(orbit.legs)
+        unknowns = u[: self.m]
+        state, times = list(unknowns[:n]), list(unknowns[n:])
+        rows = list(orbit.residual_and_jacobian(unknowns)[0])
+        for k, e in enumerate(self.touches):
+            rows += orbit.depth_and_speed(state, times, e, u[self.m + k])
+        M = orbit.closure(state, times)
+        one, mu = mp.eye(M.rows), mpf(-1)
+        for name in self.conditions:
+            if name in ("fold", "flip"):
+                rows.append(mp.det(M - one if name == "fold" else M + one))
+            elif name == "pair":
+                theta = u[self.m + len(self.touches)] if self.angle is None else self.angle
+                mu = mp.expjpi(theta / mp.pi)
+                value = mp.det(M - mu * one)
+                rows += [value.real, value.imag]
+            elif name == "cusp":
+                rows.append(self.cusp(orbit, unknowns))
+            elif name == "third":
+                rows.append(third_order(Map(orbit, state, times), mu, THIRD))
+            else:
+                double, h = mpf(int(name.split("_")[1])), mpf(10) ** -15
+                rows.append((mp.det(M - (double + h) * one) - mp.det(M - (double - h) * one)) / (2 * h))
+        return mp.matrix(rows)
+
+    @staticmethod
+    def cusp(orbit, u):
+        F = lambda u: orbit.residual_and_jacobian(u)[0]  # noqa: E731
+        m, J = len(u), mp.matrix(len(u) + 1)
+        J[:m, :m] = orbit.residual_and_jacobian(u)[1]
+        for j in range(m):  # bordered by rows that are not special
+            J[m, j], J[j, m] = mpf(1) / (j + 1), mpf(1) / (m - j)
+        side = mp.matrix([*[0] * m, 1])
+        v, w = mp.lu_solve(J, side)[:m], mp.lu_solve(J.T, side)[:m]
+        second = F(u + WIDE * v) - 2 * F(u) + F(u - WIDE * v)
+        return (w.T * second)[0] / WIDE**2
+
+    def solve(self, state, times, touching=(), theta=None, steps=6):
+        """By how much the free numbers change, and the last change of all unknowns.
+
+        state, times : of the orbit, nearly; touching : times of the touches; theta : of a pair
+        """
+        with mp.workdps(self.digits):
+            angle = [mpf(theta)] if "pair" in self.conditions and self.angle is None else []
+            u = mp.matrix([*map(mpf, [*state, *times, *touching]), *angle, *[mpf(0)] * self.free])
+            F, J = self.residual(u), mp.matrix(len(u))
+            for j in range(len(u)):
+                ahead = u.copy()
+                ahead[j] += WIDE
+                J[:, j] = (self.residual(ahead) - F) / WIDE
+            for _ in range(steps):
+                change = mp.lu_solve(J, F)
+                u -= change
+                F = self.residual(u)
+            return [float(a) for a in u[len(u) - self.free :]], float(mp.norm(change))
