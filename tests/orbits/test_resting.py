@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from mpmath import lu_solve, mp, mpf
-from reference.resting import Resting
+from reference.closed_orbit import ClosedOrbit, element_of
+from reference.machine import machine_of, moved
 from support import slow_cases
 from support.oscillators import PAPER
 
@@ -13,7 +14,6 @@ import vibro_sweep as vs
 from vibro_sweep.analysis.branches.branch_switching import mirrored
 from vibro_sweep.analysis.continuation.first_point import followed_from
 from vibro_sweep.analysis.periodic.periodic_orbit import orbit_of
-from vibro_sweep.engine.impulses.flow import contact_coordinates
 from vibro_sweep.model.linear import family_of
 
 pytestmark = pytest.mark.slow  # orbits with rests compile a kernel of branches of their own
@@ -75,30 +75,40 @@ def test_multipliers_are_those_of_the_simulated_map(resting):
 
 @pytest.mark.parametrize("b", [0.5, *slow_cases(0.05, 1.6)])  # the last with a flight between two impacts on one stop
 def test_orbit_and_derivatives_are_those_of_matrix_exponentials(b):
-    s = settled(b)[0]._solution
+    orbit = settled(b)[0]
+    s = orbit._solution
     q, rests = s.family.linear, list(s.rests)
     assert s.K == (2 if b > 1.5 else 1)
+    machine, events, known = machine_of(q), [], []
+    for k, side in enumerate(s.sides):
+        e = element_of(machine, side)
+        events += [("rest", e), ("leave", e)] if k in rests else [("impact", e)]
+        known += [s.times[k], s.ends[rests.index(k)]] if k in rests else [s.times[k]]
+    begin = known[0] - 0.1 * (known[0] + s.P - known[-1])  # in the flight before
+    of = events, s.half_periods / 2, s.sigma, begin
     with mp.workdps(50):
-        exact = Resting(q, s.sigma, s.half_periods, s.sides, rests)
-        x = contact_coordinates(q).to_masses(s.states[:1, :4])[0]
-        found = [*x[::2], *x[1::2], *s.times, *s.ends]
-        w = exact.solve(found)
-        assert np.array(found) == pytest.approx(np.array(w, float), abs=1e-13)
-        expected = np.array([complex(mu) for mu in exact.multipliers(w)])
+        exact = ClosedOrbit(machine, *of)
+        state, times = exact.solve(orbit.sample([begin])[0], known)
+        assert orbit.sample([begin])[0] == pytest.approx(np.array(state, float), abs=1e-13)
+        assert known == pytest.approx(np.array(times, float), abs=1e-13)
+        expected = np.array([complex(mu) for mu in exact.multipliers(state, times)])
         assert s.multipliers == pytest.approx(
             expected[np.lexsort((-expected.imag, -np.abs(expected).round(12)))], abs=1e-12
         )
-        J, h = exact.jacobian(w), mpf(10) ** -15
+        w, h = mp.matrix([*state, *times]), mpf(10) ** -15
+        J = exact.residual_and_jacobian(w)[1]
         for name in ("b", "omega", "zeta", "mu_m", "mu_k", "f2"):
             slope = s.family.derivative(name)
-            sides = [Resting(q, s.sigma, s.half_periods, s.sides, rests, slope, d).residual(w) for d in (h, -h)]
-            moved = np.array(lu_solve(J, (sides[1] - sides[0]) / (2 * h))[4:], float).ravel()
+            machines = [machine_of(moved(q, [slope], [d])) for d in (h, -h)]
+            sides = [ClosedOrbit(machine, *of).residual_and_jacobian(w)[0] for machine in machines]
+            rates = np.array(lu_solve(J, (sides[1] - sides[0]) / (2 * h))[4:], float).ravel()
             tangent = followed_from(s, name, 1.0).direction
             tangent /= tangent[-3]
             phases, lengths = tangent[: s.K], tangent[s.K : -1][rests]
             t = (phases - slope.tau - s.times * slope.omega) / q.omega
             ends = t[rests] + (lengths - (s.ends - s.times[rests]) * slope.omega) / q.omega
-            assert np.append(t, ends) == pytest.approx(moved, rel=1e-10), name
+            both = [a for k in range(s.K) for a in ((t[k], ends[rests.index(k)]) if k in rests else (t[k],))]
+            assert both == pytest.approx(rates, rel=1e-10), name
 
 
 @pytest.mark.parametrize("b", [0.05, 0.5, 1.2])
