@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from support import slow_cases
-from support.branches import exact_of_any, same_points, types
+from support.branches import exact, same_points, types
 from support.drawn_branches import Case
 from support.same_branch import follow, rows
 
@@ -48,7 +48,7 @@ def test_a_pair_goes_out_where_a_fold_takes_one_in(beside_fold):
     values = np.array([[value for _, value in one] for one in upwards])
     assert np.ptp(values, axis=0).max() < 1e-12
     torus = next(special for special in beside_fold[0].special if special.type == "neimark_sacker")
-    assert abs(exact_of_any(torus, "b") - torus.parameters["b"]) < 1e-13
+    assert abs(exact(torus, "b") - torus.parameters["b"]) < 1e-13
 
 
 @pytest.mark.slow

@@ -7,7 +7,9 @@ All points of the first fourteen oscillators in b, omega, R, R_left and offset w
 import numpy as np
 import pytest
 from mpmath import mp, mpf
-from support.branches import exact_of_any, shooting_of
+from reference.closed_orbit import ClosedOrbit
+from reference.machine import machine_of
+from support.branches import closed_of, exact
 from support.random_branches import attractors, bounds_of, random_oscillator
 
 import vibro_sweep as vs
@@ -45,7 +47,7 @@ def test_special_points_in_30_digits(seed, name, types):
     assert [s.type for s in special] == types.split()
     for s in special:
         with mp.workdps(30):
-            difference = float(abs(mpf(s.parameters[name]) - exact_of_any(s, name)))
+            difference = float(abs(mpf(s.parameters[name]) - exact(s, name)))
         assert difference < min(s.error, 1e-13)
 
 
@@ -54,8 +56,9 @@ def test_multipliers_in_60_digits(seed):
     """Of the attractor, each to 1e-9 of itself."""
     orbit = attractor(seed)
     with mp.workdps(60):
-        shooting, u = shooting_of(orbit)
-        expected = np.array([complex(mu) for mu in shooting.multipliers(u)])
+        d = closed_of(orbit)
+        closed = ClosedOrbit(machine_of(d.q), *d.of, digits=60)
+        expected = np.array([complex(mu) for mu in closed.multipliers(*closed.solve(*d.guess))])
     expected = expected[np.lexsort((-expected.imag, -np.abs(expected)))]
     found = orbit.half_multipliers if orbit.symmetric else orbit.multipliers
     assert np.all(np.abs(found - expected) < 1e-9 * np.abs(expected))

@@ -3,7 +3,7 @@
 import pytest
 from mpmath import mp, mpf
 from support.births import births, summary
-from support.branches import exact_of_any
+from support.branches import exact as in_digits
 
 
 @pytest.mark.parametrize(
@@ -34,7 +34,7 @@ def test_births_in_many_digits():
         points = {id(point): point for one in found for point in one.points}.values()
         ((name, _),) = found[0].points[0].parameters.items()
         with mp.workdps(30):
-            exact = exact_of_any(found[0].points[0], name)
+            exact = in_digits(found[0].points[0], name)
             assert all(abs(mpf(point.parameters[name]) - exact) < point.error for point in points), found[0].where
         counted += len(points)
     assert counted == 9

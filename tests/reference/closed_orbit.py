@@ -146,6 +146,26 @@ class ClosedOrbit:
                 J.append([self.sigma * change[place, j] - int(j == column) for j in range(count)])
             return mp.matrix([from_ball(a) for a in F]), mp.matrix([[from_ball(a) for a in row] for row in J])
 
+    def linearised(self, J, mu):
+        """The Jacobian for changes that grow by mu in the period: singular where the orbit has this multiplier, also
+        where an impact has no speed, and the closure a pole."""
+        M, events = J.copy(), len(self.legs)
+        for i in range(len(self.at)):
+            M[events + i, i] += 1 - mu
+        return M
+
+    def speed(self, u, k):
+        """The rate at which the row of event k goes to zero."""
+        n = len(self.at)
+        with mp.workdps(self.digits), precision():
+            y, now = self.start(u), self.begin
+            for i, leg in enumerate(self.legs):
+                t = to_ball(u[n + i])
+                y, now = ((leg.phase.A * (t - now)).exp() * y).mid(), t
+                if i == k:
+                    return from_ball((leg.row * leg.phase.A * y)[0, 0])
+                y = (leg.jump * y).mid()
+
     def solve(self, state, times, steps=12):
         """(state, times) by Newton's method, from a guess: x1 v1 .. (and s) at the section, times of the events."""
         with mp.workdps(self.digits):

@@ -1,11 +1,12 @@
 """Where a closed orbit fulfils conditions, in many digits: bifurcations, by Newton's method for all unknowns together.
 
 Unknowns are those of `ClosedOrbit`, times of turning points that touch a stop, angles of pairs on the unit circle, and
-the free numbers of the machine. Conditions on the matrix M of the orbit:
+the free numbers of the machine. Conditions, with J(mu) the Jacobian for changes that grow by mu in the period:
 
-    fold det(M - 1) = 0    flip, pitchfork det(M + 1) = 0    pair det(M - e^{i theta}) = 0
-    double 1, -1: the derivative of det(M - mu) by mu is 0 as well    cusp: w.F''(v, v) = 0, F v = 0, w.F = 0
+    fold det J(1) = 0    flip, pitchfork det J(-1) = 0    pair det J(e^{i theta}) = 0
+    double 1, -1: the derivative of det J(mu) by mu is 0 as well    cusp: w.F''(v, v) = 0, F' v = 0, w.F' = 0
     third: the cubic coefficient of the normal form of a flip or a pair is 0, by differences of the map
+    vanishing, of an event: the row that vanishes there does so without speed
 """
 
 from mpmath import mp, mpf
@@ -29,15 +30,15 @@ class Map:
 
 
 class Condition:
-    """machine_at: the machine for changes of the free numbers; events, periods, sigma: as of `ClosedOrbit`.
+    """machine_at: the machine for changes of the free numbers; events, periods, sigma, begin: as of `ClosedOrbit`.
 
-    conditions : "fold", "flip", "pair", "double_1", "double_-1", "cusp", "third"
+    conditions : "fold", "flip", "pair", "double_1", "double_-1", "cusp", "third", ("vanishing", number of an event)
     touches : elements, stops that turning points touch
     angle : of a pair, where it is known; None: another unknown
     """
 
-    def __init__(self, machine_at, free, events, periods, sigma=1, conditions=(), touches=(), angle=None):
-        self.machine_at, self.free, self.of = machine_at, free, (list(events), periods, sigma)
+    def __init__(self, machine_at, free, events, periods, sigma=1, begin=0, conditions=(), touches=(), angle=None):
+        self.machine_at, self.free, self.of = machine_at, free, (list(events), periods, sigma, begin)
         self.conditions, self.touches, self.angle = conditions, touches, angle
         self.digits = OF_THIRD if "third" in conditions else DIGITS
 
@@ -47,26 +48,28 @@ class Condition:
         self.m = n + len(orbit.legs)
         unknowns = u[: self.m]
         state, times = list(unknowns[:n]), list(unknowns[n:])
-        rows = list(orbit.residual_and_jacobian(unknowns)[0])
+        F, J = orbit.residual_and_jacobian(unknowns)
+        rows, det = list(F), lambda mu: mp.det(orbit.linearised(J, mu))
         for k, e in enumerate(self.touches):
             rows += orbit.depth_and_speed(state, times, e, u[self.m + k])
-        M = orbit.closure(state, times)
-        one, mu = mp.eye(M.rows), mpf(-1)
+        mu = mpf(-1)
         for name in self.conditions:
             if name in ("fold", "flip"):
-                rows.append(mp.det(M - one if name == "fold" else M + one))
+                rows.append(det(1 if name == "fold" else -1))
             elif name == "pair":
                 theta = u[self.m + len(self.touches)] if self.angle is None else self.angle
                 mu = mp.expjpi(theta / mp.pi)
-                value = mp.det(M - mu * one)
+                value = det(mu)
                 rows += [value.real, value.imag]
+            elif name[0] == "vanishing":
+                rows.append(orbit.speed(unknowns, name[1]))
             elif name == "cusp":
                 rows.append(self.cusp(orbit, unknowns))
             elif name == "third":
                 rows.append(third_order(Map(orbit, state, times), mu, THIRD))
             else:
                 double, h = mpf(int(name.split("_")[1])), mpf(10) ** -15
-                rows.append((mp.det(M - (double + h) * one) - mp.det(M - (double - h) * one)) / (2 * h))
+                rows.append((det(double + h) - det(double - h)) / (2 * h))
         return mp.matrix(rows)
 
     @staticmethod

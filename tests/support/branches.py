@@ -1,13 +1,19 @@
 """Branches of the paper's periodic orbits in b."""
 
+from typing import NamedTuple
+
 import numpy as np
 import pytest
-from reference.shooting import AnyShooting, Shooting
+from mpmath import mpf
+from reference.closed_orbit import element_of
+from reference.conditions import Condition
+from reference.machine import machine_of, moved
 
 import vibro_sweep as vs
 from support.oscillators import PAPER
+from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.engine.impulses.flow import contact_coordinates
+from vibro_sweep.model.linear import family_of
 
 NUMBERS = ("mu_m", "mu_k", "zeta", "f2", "omega", "R", "b", "tau")  # of the reference: both stops alike, offset 0
 
@@ -56,40 +62,54 @@ def repeated(orbit, times):
     return Solution(s.family, 1, s.half_periods * times, s.sides * times, u)
 
 
-def _located(special, name, shooting, u):
-    """By shooting, from what is known of the special point."""
-    value = special.parameters[name]
-    if special.type == "fold":
-        return shooting.where_multiplier(1, u, name, value)
-    if special.type in ("flip", "pitchfork"):
-        return shooting.where_multiplier(-1, u, name, value)
-    if special.type == "neimark_sacker":
-        return shooting.where_torus(u, name, value)
-    if special.impact is None:
-        _, time, side = special.orbit._solution.nearest
-        return shooting.where_touching(time, side, u, name, value)
-    return shooting.where_vanishing(int(np.argmin(special.orbit._solution.pushes)), u, name, value)
+class Closed(NamedTuple):
+    """An orbit with impacts as the reference needs it, with its section in the longest flight."""
+
+    q: object  # the Linear
+    of: tuple  # events, periods, sigma, begin
+    guess: tuple  # state at the section, times of the impacts
+    first: int  # number of the impact that is the first from the section on
+
+
+def closed_of(orbit) -> Closed:
+    s, q = orbit._solution, family_of(orbit.system).linear
+    times, first = np.array(s.times), 0
+    begin = s.nearest[1] - s.P / 2 if not s.K else 0.0
+    if s.K:
+        flights = np.append(times[1:], times[0] + s.P) - times
+        first = (int(np.argmax(flights)) + 1) % s.K
+        begin = float(times[first - 1] + flights[first - 1] / 2) - (s.P if first == 0 else 0.0)
+    order = np.roll(np.arange(s.K), -first)
+    later = order < first  # these are the next period's
+    machine, sides = machine_of(q), np.array(s.sides, int)[order] * np.where(later, s.sigma, 1)
+    events = [("impact", element_of(machine, side)) for side in sides]
+    state = PeriodicOrbit(orbit.system, "ok", s, (0, 0)).sample([begin])[0]
+    return Closed(q, (events, s.half_periods / 2, s.sigma, begin), (state, times[order] + s.P * later), first)
 
 
 def exact(special, name):
-    """The parameter of a special point in 40 digits, by shooting."""
-    solution = special.orbit._solution
-    numbers = {key: getattr(special.orbit.system, key) for key in NUMBERS}
-    shooting = Shooting(numbers, solution.sigma, solution.half_periods, solution.sides)
-    x1, x2, v1, v2 = solution.states[0][:4]
-    u = shooting.unknowns(solution.times, (x1, v1, x2, v2))
-    return _located(special, name, shooting, u)
-
-
-def shooting_of(orbit):
-    """(reference in many digits, its unknowns) of an orbit of an `Oscillator`."""
-    solution, q = orbit._solution, orbit.system.linear
-    N = len(q.normal)
-    state = contact_coordinates(q).to_masses(solution.states[0]).reshape(N, 2).T.ravel()
-    shooting = AnyShooting(orbit.system, solution.sigma, solution.half_periods, solution.sides)
-    return shooting, shooting.unknowns(solution.times, state)
-
-
-def exact_of_any(special, name):
-    """The parameter of a special point of an `Oscillator`, in many digits, by shooting."""
-    return _located(special, name, *shooting_of(special.orbit))
+    """The parameter of a special point in many digits."""
+    s, d = special.orbit._solution, closed_of(special.orbit)
+    slope = family_of(special.orbit.system).derivative(name)._replace(tau=0.0)
+    conditions, touches, touching, theta = (
+        {"fold": ["fold"], "neimark_sacker": ["pair"]}.get(special.type),
+        [],
+        [],
+        None,
+    )
+    if special.type in ("flip", "pitchfork"):
+        conditions = ["flip"]
+    elif special.type == "neimark_sacker":
+        mu = s.multipliers
+        theta = float(np.angle(mu[np.argmin(np.where(mu.imag > 1e-9, np.abs(np.abs(mu) - 1), np.inf))]))
+    elif conditions is None and special.impact is None:
+        _, time, side = s.nearest
+        turns = int(np.floor((time - d.of[3]) / s.P))
+        conditions, touching = [], [time - turns * s.P]
+        touches = [element_of(machine_of(d.q), int(side) * s.sigma**turns)]
+    elif conditions is None:
+        conditions = [("vanishing", (int(np.argmin(s.pushes)) - d.first) % s.K)]
+    at = lambda changes: machine_of(moved(d.q, [slope], changes))  # noqa: E731
+    off, change = Condition(at, 1, *d.of, conditions, touches).solve(*d.guess, touching, theta)
+    assert change < 1e-13, change
+    return special.parameters[name] + mpf(off[0])

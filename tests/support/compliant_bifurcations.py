@@ -163,7 +163,7 @@ def distance_in_digits(special, pulled=False) -> tuple[np.ndarray, float]:
     machine, (sides, periods, sigma) = machine_of(d.q), d.of
     exact = Condition(
         lambda changes: machine_of(moved(d.q, slopes, changes)), len(slopes), contacts_of(machine, sides, pulled),
-        periods, sigma, conditions, [element_of(machine, side) for side in d.touched], ANGLES.get(special.type),
+        periods, sigma, 0, conditions, [element_of(machine, side) for side in d.touched], ANGLES.get(special.type),
     )  # fmt: skip
     off, change = exact.solve(*d.guess)
     return np.array(off), change
