@@ -56,7 +56,7 @@ def test_multipliers_in_60_digits(seed):
     """Of the attractor, each to 1e-9 of itself."""
     orbit = attractor(seed)
     with mp.workdps(60):
-        d = closed_of(orbit)
+        d = closed_of(orbit._solution)
         closed = ClosedOrbit(machine_of(d.q), *d.of, digits=60)
         expected = np.array([complex(mu) for mu in closed.multipliers(*closed.solve(*d.guess))])
     expected = expected[np.lexsort((-expected.imag, -np.abs(expected)))]

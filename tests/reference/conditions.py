@@ -1,9 +1,10 @@
 """Where a closed orbit fulfils conditions, in many digits: bifurcations, by Newton's method for all unknowns together.
 
-Unknowns are those of `ClosedOrbit`, times of turning points that touch a stop, angles of pairs on the unit circle, and
-the free numbers of the machine. Conditions, with J(mu) the Jacobian for changes that grow by mu in the period:
+Unknowns are those of `ClosedOrbit`, times of turning points that touch a stop, the cosine of the angle of a pair on the
+unit circle, and the free numbers of the machine. Conditions, with J(mu) the Jacobian for changes that grow by mu in a
+period:
 
-    fold det J(1) = 0    flip, pitchfork det J(-1) = 0    pair det J(e^{i theta}) = 0
+    fold det J(1) = 0    flip, pitchfork det J(-1) = 0    pair det J(mu) = 0 for mu = e^{i theta} and e^{-i theta}
     double 1, -1: the derivative of det J(mu) by mu is 0 as well    cusp: w.F''(v, v) = 0, F' v = 0, w.F' = 0
     third: the cubic coefficient of the normal form of a flip or a pair is 0, by differences of the map
     vanishing, of an event: the row that vanishes there does so without speed
@@ -15,6 +16,8 @@ from reference.closed_orbit import DIGITS, ClosedOrbit
 from reference.normal_forms import third_order
 
 WIDE = mpf(10) ** -12  # step of differences
+NEAR = mpf(10) ** -8  # a change of the unknowns from which on the Jacobian is kept
+SINGLE = mpf(10) ** -14  # where the two of a pair are one, Newton's method begins beside it
 THIRD, OF_THIRD = mpf(10) ** -12, 60  # step of third ones, and digits: stiff stops bend the map
 
 
@@ -57,10 +60,12 @@ class Condition:
             if name in ("fold", "flip"):
                 rows.append(det(1 if name == "fold" else -1))
             elif name == "pair":
-                theta = u[self.m + len(self.touches)] if self.angle is None else self.angle
-                mu = mp.expjpi(theta / mp.pi)
-                value = det(mu)
-                rows += [value.real, value.imag]
+                c = u[self.m + len(self.touches)] if self.angle is None else mp.cos(self.angle)
+                root = mp.sqrt(
+                    mp.mpc(c * c - 1)
+                )  # both values and their divided difference are real, also at c = 1, -1
+                mu, other = c + root, c - root
+                rows += [mp.re(det(mu) + det(other)), mp.re((det(mu) - det(other)) / root)]
             elif name[0] == "vanishing":
                 rows.append(orbit.speed(unknowns, name[1]))
             elif name == "cusp":
@@ -71,6 +76,14 @@ class Condition:
                 double, h = mpf(int(name.split("_")[1])), mpf(10) ** -15
                 rows.append((det(double + h) - det(double - h)) / (2 * h))
         return mp.matrix(rows)
+
+    def jacobian(self, u, F):
+        J = mp.matrix(len(u))
+        for j in range(len(u)):
+            ahead = u.copy()
+            ahead[j] += WIDE
+            J[:, j] = (self.residual(ahead) - F) / WIDE
+        return J
 
     @staticmethod
     def cusp(orbit, u):
@@ -84,21 +97,22 @@ class Condition:
         second = F(u + WIDE * v) - 2 * F(u) + F(u - WIDE * v)
         return (w.T * second)[0] / WIDE**2
 
-    def solve(self, state, times, touching=(), theta=None, steps=6):
+    def solve(self, state, times, touching=(), theta=None, steps=10):
         """By how much the free numbers change, and the last change of all unknowns.
 
         state, times : of the orbit, nearly; touching : times of the touches; theta : of a pair
         """
         with mp.workdps(self.digits):
-            angle = [mpf(theta)] if "pair" in self.conditions and self.angle is None else []
+            angle = []
+            if "pair" in self.conditions and self.angle is None:
+                c = mp.cos(theta)
+                angle = [c * (1 - SINGLE) if abs(c * c - 1) < SINGLE else c]
             u = mp.matrix([*map(mpf, [*state, *times, *touching]), *angle, *[mpf(0)] * self.free])
-            F, J = self.residual(u), mp.matrix(len(u))
-            for j in range(len(u)):
-                ahead = u.copy()
-                ahead[j] += WIDE
-                J[:, j] = (self.residual(ahead) - F) / WIDE
+            F, change = self.residual(u), mp.inf
             for _ in range(steps):
-                change = mp.lu_solve(J, F)
-                u -= change
-                F = self.residual(u)
-            return [float(a) for a in u[len(u) - self.free :]], float(mp.norm(change))
+                if change > NEAR:
+                    J = self.jacobian(u, F)
+                step = mp.lu_solve(J, F)
+                u -= step
+                F, change = self.residual(u), mp.norm(step)
+            return [float(a) for a in u[len(u) - self.free :]], float(change)

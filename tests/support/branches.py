@@ -13,7 +13,6 @@ import vibro_sweep as vs
 from support.oscillators import PAPER
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.model.linear import family_of
 
 NUMBERS = ("mu_m", "mu_k", "zeta", "f2", "omega", "R", "b", "tau")  # of the reference: both stops alike, offset 0
 
@@ -71,9 +70,8 @@ class Closed(NamedTuple):
     first: int  # number of the impact that is the first from the section on
 
 
-def closed_of(orbit) -> Closed:
-    s, q = orbit._solution, family_of(orbit.system).linear
-    times, first = np.array(s.times), 0
+def closed_of(s: Solution) -> Closed:
+    q, times, first = s.family.linear, np.array(s.times), 0
     begin = s.nearest[1] - s.P / 2 if not s.K else 0.0
     if s.K:
         flights = np.append(times[1:], times[0] + s.P) - times
@@ -83,33 +81,44 @@ def closed_of(orbit) -> Closed:
     later = order < first  # these are the next period's
     machine, sides = machine_of(q), np.array(s.sides, int)[order] * np.where(later, s.sigma, 1)
     events = [("impact", element_of(machine, side)) for side in sides]
-    state = PeriodicOrbit(orbit.system, "ok", s, (0, 0)).sample([begin])[0]
+    state = PeriodicOrbit(None, "ok", s, (0, 0)).sample([begin])[0]
     return Closed(q, (events, s.half_periods / 2, s.sigma, begin), (state, times[order] + s.P * later), first)
+
+
+def angle_of(s: Solution) -> float:
+    """The angle of the pair of multipliers that is nearest to the unit circle."""
+    mu = s.multipliers
+    return float(np.angle(mu[np.argmin(np.where(mu.imag > 1e-9, np.abs(np.abs(mu) - 1), np.inf))]))
+
+
+def located(s: Solution, names, conditions, touching=(), theta=None, angle=None):
+    """By how much these numbers change until the orbit fulfils the conditions: those of reference.conditions.
+
+    conditions : with numbers of impacts as of the orbit; touching : (time, side) of turning points that touch a stop
+    """
+    d, P = closed_of(s), s.P
+    conditions = [one if isinstance(one, str) else (one[0], (one[1] - d.first) % s.K) for one in conditions]
+    turns = [int(np.floor((time - d.of[3]) / P)) for time, _ in touching]
+    times = [time - n * P for (time, _), n in zip(touching, turns, strict=True)]
+    machine = machine_of(d.q)
+    touches = [element_of(machine, int(side) * s.sigma**n) for (_, side), n in zip(touching, turns, strict=True)]
+    slopes = [s.family.derivative(name)._replace(tau=0.0) for name in names]
+    at = lambda changes: machine_of(moved(d.q, slopes, changes))  # noqa: E731
+    theta = angle_of(s) if "pair" in conditions and angle is None and theta is None else theta
+    condition = Condition(at, len(slopes), *d.of, conditions, touches, angle)
+    off, change = condition.solve(*d.guess, times, theta)
+    assert change < 1e-14, change
+    return off
 
 
 def exact(special, name):
     """The parameter of a special point in many digits."""
-    s, d = special.orbit._solution, closed_of(special.orbit)
-    slope = family_of(special.orbit.system).derivative(name)._replace(tau=0.0)
-    conditions, touches, touching, theta = (
-        {"fold": ["fold"], "neimark_sacker": ["pair"]}.get(special.type),
-        [],
-        [],
-        None,
-    )
-    if special.type in ("flip", "pitchfork"):
-        conditions = ["flip"]
-    elif special.type == "neimark_sacker":
-        mu = s.multipliers
-        theta = float(np.angle(mu[np.argmin(np.where(mu.imag > 1e-9, np.abs(np.abs(mu) - 1), np.inf))]))
-    elif conditions is None and special.impact is None:
-        _, time, side = s.nearest
-        turns = int(np.floor((time - d.of[3]) / s.P))
-        conditions, touching = [], [time - turns * s.P]
-        touches = [element_of(machine_of(d.q), int(side) * s.sigma**turns)]
-    elif conditions is None:
-        conditions = [("vanishing", (int(np.argmin(s.pushes)) - d.first) % s.K)]
-    at = lambda changes: machine_of(moved(d.q, [slope], changes))  # noqa: E731
-    off, change = Condition(at, 1, *d.of, conditions, touches).solve(*d.guess, touching, theta)
-    assert change < 1e-13, change
-    return special.parameters[name] + mpf(off[0])
+    s = special.orbit._solution
+    kinds = {"fold": ["fold"], "flip": ["flip"], "pitchfork": ["flip"], "neimark_sacker": ["pair"]}
+    conditions, touching = kinds.get(special.type, []), []
+    if special.type not in kinds and special.impact is None:
+        touching = [s.nearest[1:]]
+    elif special.type not in kinds:
+        conditions = [("vanishing", int(np.argmin(s.pushes)))]
+    (off,) = located(s, [name], conditions, touching)
+    return special.parameters[name] + mpf(off)
