@@ -3,6 +3,7 @@
 import pytest
 from mpmath import mp, mpf
 from reference.closed_orbit import ClosedOrbit
+from reference.conditions import Condition
 from reference.events import simulate
 from reference.flow import FREE, HELD, RELAXING, SLIP
 from reference.machine import Contact, Friction, Harmonic, Machine, Stop
@@ -105,3 +106,28 @@ def test_a_mirrored_half_of_an_orbit():
         squares = [mu * mu for mu in half.multipliers(*half.solve(start, times[:1]))]
         wanted = whole.multipliers(*whole.solve(start, times))
         assert max(min(abs(mu - a) for a in squares) for mu in wanted) < mpf("1e-28")
+
+
+@pytest.mark.parametrize("kind", ["flip", "fold"])
+def test_bifurcations_of_a_bouncing_ball(kind):
+    """On a table A sin(t), gravity 1, an impact each period: from A = pi (1 - R)/(1 + R), a fold, to the flip at
+    A^2 = (pi (1 - R)/(1 + R))^2 + 4 (1 + R^2)^2/(1 + R)^4. The gap is closed with the speed 2 pi/(1 + R)."""
+    with mp.workdps(50):
+        R = mpf(0.75)
+        least = mp.pi * (1 - R) / (1 + R)
+        wanted = mp.sqrt(least**2 + 4 * (1 + R**2) ** 2 / (1 + R) ** 4) if kind == "flip" else least
+        A = wanted * (1 + mpf("1e-5"))
+        t, v = mp.acos(least / A), R * 2 * mp.pi / (1 + R)  # of the impact, and the speed after it
+        u = mp.pi  # from there to the section
+        x = v * u - u**2 / 2 + A * (mp.sin(t) - mp.sin(t + u) + mp.cos(t) * u)
+        state = [x, v - u + A * (mp.cos(t) - mp.cos(t + u))]
+
+        def machine_at(change):
+            return driven([Stop(-1, 0, R=R)], k=0, c=0, constant=-1, F=A + change[0], omega=1)
+
+        condition = Condition(machine_at, 1, [("impact", 0)], 1, 1, t + u, [kind])
+        closed = ClosedOrbit(machine_at([0]), *condition.of)
+        there, times = closed.solve(state, [t + 2 * mp.pi])
+        assert abs(closed.speed([*there, *times], 0) + 2 * mp.pi / (1 + R)) < mpf("1e-28")
+        off, change = condition.solve(state, [t + 2 * mp.pi])
+        assert change < 1e-20 and abs(off[0] - (wanted - A)) < 1e-12 * abs(A - wanted)
