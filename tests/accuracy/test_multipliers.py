@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from reference import monodromy
+from reference.closed_orbit import ClosedOrbit, impacts_of
+from reference.machine import machine_of
 from support import slow_cases
 from support.scene_texts import parsed
 
@@ -48,7 +49,9 @@ def test_against_forty_digits(tmp_path, values, transient):
     assert period > 0 and int(data.status) == status.OK
     state = [float(data[name][-1]) for name in ("x1", "v1", "x2", "v2")]
     orbit = vs.simulate(system, state, period)
-    exact = np.array(monodromy.multipliers(system.parameters(), orbit.impacts, period))
+    machine = machine_of(system.linear)
+    closed = ClosedOrbit(machine, impacts_of(machine, orbit.impacts["side"]), period)
+    exact = np.array([complex(mu) for mu in closed.multipliers(*closed.solve(state, orbit.impacts["t"]))])
     found = (data.multiplier_re + 1j * data.multiplier_im).values
     paired = np.array([exact[np.argmin(np.abs(exact - value))] for value in found])
     error = np.abs(found - paired)

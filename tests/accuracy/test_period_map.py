@@ -8,7 +8,9 @@ import math
 import numpy as np
 import pytest
 from mpmath import mp, mpf
-from reference import monodromy, naive
+from reference import naive
+from reference.closed_orbit import ClosedOrbit, impacts_of
+from reference.machine import machine_of
 from support.quotients import DIGITS, STEP, quotient
 
 import vibro_sweep as vs
@@ -207,7 +209,9 @@ def test_multipliers_against_forty_digits():
     system = vs.System(**naive.PAPER, b=3.7576)
     X = vs.simulate(system, (0, 0, 0, 0), 3000).section[-1]
     mapped = PeriodMap(system)([X], jacobian=True)
-    exact = np.array(monodromy.multipliers(system.parameters(), mapped.impacts[0], 1))
+    machine, hits = machine_of(system.linear), mapped.impacts[0]
+    closed = ClosedOrbit(machine, impacts_of(machine, hits["side"]), 1)
+    exact = np.array([complex(mu) for mu in closed.multipliers(*closed.solve(X, hits["t"]))])
     found = np.linalg.eigvals(mapped.jacobian[0])
     for value in found:
         assert abs(exact - value).min() < 1e-10

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 from mpmath import log, mp, mpf
-from reference.shooting import AnyShooting
+from reference.closed_orbit import ClosedOrbit, impacts_of
+from reference.machine import machine_of
 from support import slow_cases
 
 import vibro_sweep as vs
@@ -45,10 +46,9 @@ def exact(system, data):
     orbit = vs.simulate(system, state, int(data.period))
     if not 0 < len(orbit.impacts) <= MOST_IMPACTS or len(orbit.sticking) or orbit.status.note:
         return None
-    shooting = AnyShooting(system, 1, 2 * int(data.period), orbit.impacts["side"].tolist())
-    first = orbit.impacts[0]
-    found = shooting.multipliers(shooting.unknowns(orbit.impacts["t"], [*first["x"], *first["xdot"]]))
-    return sorted(found, key=lambda multiplier: -abs(multiplier))
+    machine = machine_of(system.linear)
+    closed = ClosedOrbit(machine, impacts_of(machine, orbit.impacts["side"]), int(data.period))
+    return closed.multipliers(*closed.solve(state, orbit.impacts["t"]))
 
 
 def ratios(seed):

@@ -5,7 +5,8 @@ import math
 import numpy as np
 import pytest
 from mpmath import mp, mpf
-from reference.monodromy import multipliers
+from reference.closed_orbit import ClosedOrbit, impacts_of
+from reference.machine import machine_of
 from scipy.linalg import expm
 from scipy.optimize import brentq
 from support.branches import exact
@@ -82,11 +83,12 @@ def test_multipliers_of_random_attractors_in_40_digits(seed):
         orbit = vs.periodic_orbit(system, state=state, periods=n)
         if not orbit.ok or not len(orbit.impacts):
             continue
-        numbers = system.parameters() | {"tau": system.phase}
         length = orbit.period * system.period
         hits = np.sort(orbit.impacts, order="t")
         hits["t"] %= length
-        expected = np.array(multipliers(numbers, np.sort(hits, order="t"), orbit.period))
+        hits, machine = np.sort(hits, order="t"), machine_of(system.linear)
+        closed = ClosedOrbit(machine, impacts_of(machine, hits["side"]), orbit.period)
+        expected = np.array([complex(mu) for mu in closed.multipliers(*closed.solve(orbit.state, hits["t"]))])
         for value in orbit.multipliers:
             nearest = expected[np.argmin(np.abs(expected - value))]
             others = np.abs(expected - nearest)[np.abs(expected - nearest) > 0]

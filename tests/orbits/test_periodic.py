@@ -6,7 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from mpmath import mp, mpf
-from reference.shooting import Shooting
+from reference.closed_orbit import ClosedOrbit, impacts_of
+from reference.machine import machine_of
 from support import slow_cases
 from support.oscillators import BALL, CAVITY, CHAIN, ONE_MASS, PAPER
 
@@ -98,12 +99,9 @@ def test_multipliers_over_ten_decades_against_40_digits():
     system = PAPER.replace(b=6.705)
     orbit = vs.periodic_orbit(system, itinerary="LR")
     with mp.workdps(40):
-        numbers = {name: getattr(system, name) for name in ("mu_m", "mu_k", "zeta", "f2", "omega", "R", "b", "tau")}
-        shooting = Shooting(numbers, sigma=-1, half_periods=1, sides=[-1])
-        first = orbit.impacts[0]
-        u = shooting.unknowns([first["t"]], [-system.b, first["v1"], first["x2"], first["v2"]])
-        A, n = shooting.system()
-        mu = mp.eig(shooting.monodromy(A, n, shooting.solve(u)), left=False, right=False)
+        first, machine = orbit.impacts[0], machine_of(system.linear)
+        closed = ClosedOrbit(machine, impacts_of(machine, first["side"][None]), 0.5, -1, first["t"] - 1)
+        mu = closed.multipliers(*closed.solve(orbit.sample([first["t"] - 1])[0], [first["t"]]))
         expected = sorted((complex(m) for m in mu), key=lambda m: (-round(abs(m), 12), -m.imag))
     assert orbit.half_multipliers == pytest.approx(np.array(expected), rel=1e-10)
     assert not orbit.stable
@@ -232,15 +230,14 @@ def test_thousand_guesses_give_the_orbit_or_an_honest_failure():
         assert np.abs(one.jumps + 1.8 * one.states[:, len(q.normal)]).max() < 1e-12
 
 
-def test_shooting_of_the_reference_finds_the_same_orbit():
+def test_the_reference_finds_the_same_orbit():
     orbit = vs.periodic_orbit(PAPER, itinerary="R")
     orbit = orbit if orbit.ok else vs.periodic_orbit(PAPER.replace(b=4.0), itinerary="R")
     with mp.workdps(30):
-        names = ("mu_m", "mu_k", "zeta", "f2", "omega", "R", "b", "tau")
-        shooting = Shooting({name: getattr(orbit.system, name) for name in names}, sigma=1, half_periods=2, sides=[1])
-        i = orbit.impacts[0]
-        x = shooting.solve(shooting.unknowns([i["t"]], [orbit.system.b, i["v1"], i["x2"], i["v2"]]))
-        for mine, exact in zip((i["t"], i["x2"], i["v1"], i["v2"]), (x[0], x[2], x[3], x[4]), strict=True):
+        machine = machine_of(orbit.system.linear)
+        closed = ClosedOrbit(machine, impacts_of(machine, orbit.impacts["side"]), 1)
+        state, times = closed.solve(orbit.state, orbit.impacts["t"])
+        for mine, exact in zip((*orbit.state, *orbit.impacts["t"]), (*state, *times), strict=True):
             assert abs(mpf(float(mine)) - exact) < 2e-14
 
 

@@ -5,9 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from reference.monodromy import multipliers
+from reference.closed_orbit import ClosedOrbit, impacts_of
+from reference.machine import machine_of
 from support import branch_search, conditions
-from support.branches import NUMBERS
 from support.drawn_branches import MODELS, Case
 from support.oscillators import PAPER
 from support.random_branches import study, summary
@@ -80,9 +80,9 @@ def test_the_monodromy_matrix_is_that_of_many_digits(known):
             if special.type == "graze":  # division by a speed of zero
                 continue
             orbit = special.orbit
-            numbers = {name: getattr(orbit.system, name) for name in NUMBERS}
-            numbers["tau"] = orbit.system.linear.tau
-            exact = np.array(multipliers(numbers, orbit.impacts, orbit.period))
+            machine, hits = machine_of(orbit.system.linear), np.sort(orbit.impacts, order="t")
+            closed = ClosedOrbit(machine, impacts_of(machine, hits["side"]), orbit.period)
+            exact = np.array([complex(mu) for mu in closed.multipliers(orbit.state, hits["t"])])
             found = np.linalg.eigvals(conditions.at_point(orbit)[0].matrix[0])
             found = found**2 if orbit.symmetric else found
             assert np.abs(np.sort_complex(found) - np.sort_complex(exact)).max() < 1e-11

@@ -3,11 +3,13 @@
 import numpy as np
 import pytest
 from mpmath import mp
-from reference.normal_forms import SectionMap, jacobian, third_order
-from reference.shooting import Shooting
+from reference.closed_orbit import ClosedOrbit
+from reference.conditions import Map
+from reference.machine import machine_of
+from reference.normal_forms import third_order
 from scipy.linalg import expm
 from support import slow_cases
-from support.branches import NUMBERS
+from support.branches import closed_of
 from support.oscillators import PAPER
 
 import vibro_sweep as vs
@@ -32,14 +34,9 @@ def test_coefficient_agrees_with_differences_of_the_map_in_50_digits(omega):
     back = expm(-flow(s.family.linear).B * s.P / 2)[:4, :4]
     size = np.linalg.norm(back @ (e.place.v[0, :4] * [1, 1, s.family.linear.omega, s.family.linear.omega]))
     with mp.workdps(50):
-        shooting = Shooting({key: s.family.numbers[key] for key in NUMBERS}, s.sigma, s.half_periods, s.sides)
-        x1, x2, v1, v2 = s.states[0][:4]
-        A, n = shooting.system()
-        u = shooting.unknowns(s.times, (x1, v1, x2, v2))
-        for _ in range(4):
-            J = jacobian(lambda x: shooting.residual(A, n, x), u)
-            u = [a - b for a, b in zip(u, mp.lu_solve(J, mp.matrix(shooting.residual(A, n, u))), strict=True)]
-        expected = float(third_order(SectionMap(shooting, A, n, u), mp.expj(theta)))
+        d = closed_of(s)  # with its section in the middle of the flight
+        closed = ClosedOrbit(machine_of(d.q), *d.of, digits=50)
+        expected = float(third_order(Map(closed, *closed.solve(*d.guess)), mp.expj(theta)))
     assert found.real == pytest.approx(expected * size**2, rel=1e-8)
     assert special.criticality == ("super" if expected < 0 else "sub")
 

@@ -42,6 +42,11 @@ class Leg(NamedTuple):
     jump: arb_mat  # D
 
 
+def impacts_of(machine, sides):
+    """The events of impacts on the stops of the first contact."""
+    return [("impact", element_of(machine, side)) for side in sides]
+
+
 def contacts_of(machine, sides, pulled=False):
     """The events of contacts with compliant stops of the first contact.
 

@@ -1,51 +1,14 @@
-"""Coefficients of normal forms in many digits, by differences of the map and of the equations of an orbit.
+"""Coefficients of normal forms in many digits, by differences of the map of an orbit.
 
-Kuznetsov, Elements of Applied Bifurcation Theory, 3rd edition: (5.45) for a pair of multipliers, (9.10) for -1, and the
-quadratic coefficient of a fold. No power series, no impulses.
+Kuznetsov, Elements of Applied Bifurcation Theory, 3rd edition: (5.45) for a pair of multipliers, (9.10) for -1. No
+power series, no impulses.
 """
 
 from itertools import product
 
-from mpmath import eye, mp, mpf, pi, zeros
-
-from reference.shooting import Shooting
+from mpmath import eye, mp, mpf, zeros
 
 STEP = mpf(10) ** -10  # of differences, relative to states of size 1: for 50 digits
-
-
-class SectionMap:
-    """The map over P, with the mirror for sigma = -1, of states (x1, x2, v1, v2) at a time between two impacts."""
-
-    def __init__(self, shooting: Shooting, A, n, u):
-        self.s, self.A, self.n = shooting, A, n
-        K, self.P = len(shooting.sides), pi / n["omega"] * shooting.half_periods
-        t, self.t = u[:K], list(u[:K])
-        z = list(u[K:])
-        flights = [(t[k + 1] if k + 1 < K else t[0] + self.P) - t[k] for k in range(K)]
-        longest = max(range(K), key=lambda k: flights[k])
-        for k in range(longest + 1):  # to the middle of the longest flight
-            z[2] = -n["R"] * z[2]
-            z = shooting.fly(A, n, t[k], z, flights[k] if k < longest else flights[k] / 2)
-        self.begin, self.centre = t[longest] + flights[longest] / 2, z
-        later = list(range(longest + 1, K))
-        self.impacts = [(t[k], shooting.sides[k]) for k in later]
-        self.impacts += [(t[k] + self.P, shooting.sigma * shooting.sides[k]) for k in range(longest + 1)]
-
-    def __call__(self, change):
-        """The change of the image."""
-        s, A, n = self.s, self.A, self.n
-        z, t = [a + b for a, b in zip(self.centre, change, strict=True)], self.begin
-        for guess, side in self.impacts:
-            for _ in range(30):
-                there = s.fly(A, n, t, z, guess - t)
-                step = (there[0] - side * n["b"]) / there[2]
-                guess -= step
-                if abs(step) < mpf(10) ** (-mp.dps + 6):
-                    break
-            z, t = s.fly(A, n, t, z, guess - t), guess
-            z[2] = -n["R"] * z[2]
-        z = s.fly(A, n, t, z, self.begin + self.P - t)
-        return mp.matrix([s.sigma * a - b for a, b in zip(z, self.centre, strict=True)])
 
 
 def third_order(f, mu, h=STEP):
@@ -110,35 +73,3 @@ def null_vector(M):
         B[i, n], B[n, i] = mpf(1) / (i + 2), mpf(1) / (2 * i + 3)
     x = mp.lu_solve(B, mp.matrix([0] * n + [1]))[:n]
     return mp.matrix(x) / mp.norm(mp.matrix(x))
-
-
-def jacobian(residual, u):
-    n, h = len(u), STEP
-    J = zeros(n)
-    for j in range(n):
-        ends = [mp.matrix(residual([a + sign * h * (i == j) for i, a in enumerate(u)])) for sign in (1, -1)]
-        J[:, j] = (ends[0] - ends[1]) / (2 * h)
-    return J
-
-
-def linearised(shooting: Shooting, A, n, u, mu):
-    """(K + 4, K + 4): singular where the orbit has the multiplier mu, also where an impact has no speed.
-
-    It is the Jacobian of the residual for changes that grow by mu from one period to the next, the first time too.
-    """
-    K = len(shooting.sides)
-    J = jacobian(lambda x: shooting.residual(A, n, x), u)
-    rate = shooting.rate(A, n, u[0], u[K:])
-    for i in range(4):
-        J[K + i, 0] += (mu - 1) * shooting.sigma * rate[i]
-        J[K + i, K + i] -= (mu - 1) * shooting.sigma
-    return J
-
-
-def fold(residual, u):
-    """(determinant, quadratic coefficient) of the equations residual(u) = 0: both vanish at a cusp."""
-    h, f0, J = STEP, mp.matrix(residual(u)), jacobian(residual, u)
-    v, w = null_vector(J), null_vector(J.T)
-    ends = [mp.matrix(residual([a + sign * h * b for a, b in zip(u, v, strict=True)])) for sign in (1, -1)]
-    second = (ends[0] + ends[1] - 2 * f0) / h**2
-    return mp.det(J), sum(a * b for a, b in zip(w, second, strict=True))
