@@ -9,15 +9,45 @@ series in s, no contact coordinates, no impulses.
 import gmpy2
 from mpmath import exp, findroot, log, mp, mpf, pi, zeros
 
+from reference.flow import matrix_of
 from reference.gmp import context, dot, from_gmp, to_gmp
-from reference.shooting import AnyShooting
+from reference.machine import machine_of
 
 NEAREST = mpf(10) ** -9  # s of the last impact: the parameter's error is its square
 EXTRA = 80  # bits: the gap moves by s^3 only
 
 
-class Chatter(AnyShooting):
-    """sides: of the impacts written out, in order, the last ones of the chatter; unknowns: state at T, T, log s."""
+class Chatter:
+    """An `Oscillator` (tau a number) whose motion is repeated after half periods, mirrored if sigma is -1.
+
+    sides: of the impacts written out, in order, the last ones of the chatter; unknowns: state (x, x') at T, T, log s.
+    """
+
+    def __init__(self, oscillator, sigma: int, half_periods: int, sides):
+        self.q, self.sigma, self.half_periods, self.sides = oscillator.linear, sigma, half_periods, tuple(sides)
+        self.machine, self.N = machine_of(self.q)._replace(contacts=()), len(self.q.normal)
+        self.numbers = {name: mpf(getattr(oscillator, name)) for name in ("omega", "b", "offset", "R")}
+        self.follows = oscillator.R_left is None
+        self.numbers["R_left"] = self.numbers["R"] if self.follows else mpf(oscillator.R_left)
+        self.normal = [mpf(a) for a in self.q.normal.tolist()]
+
+    def system(self, name, value):
+        """A of z' = A z for z = (x, x', sin, cos, 1), and the numbers, with one of them replaced."""
+        n = self.numbers | {name: value}
+        if self.follows:
+            n["R_left"] = n["R"]
+        size = 2 * self.N + 3
+        order = [*range(0, 2 * self.N, 2), *range(1, 2 * self.N, 2), *range(2 * self.N, size)]
+        A = matrix_of(self.machine._replace(omega=n["omega"]))
+        push = mp.inverse(mp.matrix(self.q.M.tolist())) * mp.matrix(self.normal)
+        n["push"] = [value / mp.fdot(self.normal, push) for value in push]
+        return mp.matrix([[A[i, j] for j in order] for i in order]), n
+
+    def stop(self, n, side):
+        return n["offset"] + side * n["b"]
+
+    def speed(self, z):
+        return self.gap(z[self.N :])
 
     def taylor(self, A, n, t, z):
         """Taylor coefficients of the flight through z at t, as long as they count over 3/omega; A, z in gmpy2."""
