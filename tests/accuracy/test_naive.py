@@ -1,5 +1,7 @@
 """The slow simulator against what is known without it: a general ODE solver, and exact identities."""
 
+import json
+
 import pytest
 from mpmath import mp, mpf
 from reference import naive
@@ -55,6 +57,16 @@ def test_exponential_of_a_matrix_as_mpmath_has_it(zeta, u):
     with mp.workdps(80):
         exact = mp.expm(A)
     assert mp.mnorm(expm(A) - exact) <= mpf("1e-39") * mp.mnorm(exact)
+
+
+@pytest.mark.parametrize("recorded", json.loads(naive.REFERENCE.read_text()), ids=lambda one: f"b={one['params']['b']}")
+def test_recorded_impacts(recorded):
+    """They were computed by another simulator, in gmpy2."""
+    impacts = naive.simulate(recorded["params"], recorded["state"], impacts=naive.COUNT).impacts
+    assert [hit.side for hit in impacts] == recorded["side"] and len(impacts) == naive.COUNT
+    for field in naive.FIELDS:
+        exact = [mpf(one) for one in recorded["impacts"][field]]
+        assert distance([getattr(hit, field) for hit in impacts], exact) < mpf("1e-24") * max(map(abs, exact))
 
 
 def test_grazing_of_the_paper():

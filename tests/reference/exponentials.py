@@ -4,6 +4,9 @@ Every derivative is known exactly, and |f^(n)| <= sum of |a_k| |l_k|^n e^{Re l_k
 precision (numpy's longdouble) and with its rounding bounded, all intervals are excluded on which f is positive for
 certain; what is left is decided by bisection in the working precision of mpmath. A term that an interval does not
 resolve is not followed there but bounded by its size.
+
+Where rates are 1e4 apart, steps of exp(A h) (flow.py) take 40 to 90 times as long to the first impact, and longer still
+through a rest.
 """
 
 from functools import cached_property
