@@ -1,4 +1,4 @@
-"""Points of codimension two in 50 digits, by shooting and differences of the map (tests/reference/normal_forms.py)."""
+"""Points of codimension two in many digits (tests/reference/conditions.py)."""
 
 import pytest
 from support.branches import branch_of

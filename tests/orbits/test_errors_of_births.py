@@ -27,7 +27,7 @@ def test_births_located_several_times(seeds, capsys):
 
 @pytest.mark.slow
 def test_births_in_many_digits():
-    """By shooting in 30 digits; orbits of four to sixteen impacts."""
+    """Against 45 digits; orbits of four to sixteen impacts."""
     counted = 0
     for seed, impacts in ((0, 5), (7, 16), (44, 4)):
         found = [one for one in births(seed) if one.impacts == impacts]

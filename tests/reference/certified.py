@@ -14,6 +14,7 @@ from mpmath import mp, mpf
 from reference.flow import matrix_of
 from reference.gmp import context, expm, to_gmp
 from reference.machine import machine_of
+from reference.naive import linear_of
 
 REAL = np.longdouble
 UNIT = float(np.finfo(REAL).eps) / 2  # 2^-64 where longdouble is the x87 format
@@ -206,18 +207,8 @@ def real(x):
 def of_paper(params, digits=40):
     """The paper's oscillator; x1 is the gap."""
     with mp.workdps(digits):
-        mu_m, mu_k, zeta, f2, omega, tau = (
-            mpf(params[name]) for name in ("mu_m", "mu_k", "zeta", "f2", "omega", "tau")
-        )
-        above = 1 + mu_k
-        A = mp.zeros(6)
-        A[0, 1] = A[2, 3] = 1
-        for j, a in enumerate((-1, -2 * zeta, 1, 2 * zeta, 1 - f2, 0)):
-            A[1, j] = a
-        for j, a in enumerate((1, 2 * zeta, -above, -2 * zeta * above, f2, 0)):
-            A[3, j] = a / mu_m
-        A[4, 5], A[5, 4] = omega, -omega
-        return Reference(A, [mpf(j == 0) for j in range(6)], omega, tau, digits)
+        A = matrix_of(machine_of(linear_of(params)))[:6, :6]  # without the constant force
+        return Reference(A, [mpf(j == 0) for j in range(6)], mpf(params["omega"]), mpf(params["tau"]), digits)
 
 
 def of_masses(q, digits=40):

@@ -35,7 +35,7 @@ class Event(NamedTuple):
     y: list
 
 
-class Span(NamedTuple):
+class Rest(NamedTuple):
     """A rest on a stop; `t_off` is the end of the orbit where it still goes on then."""
 
     t_on: mpf
@@ -44,7 +44,7 @@ class Span(NamedTuple):
     element: int
 
 
-class Closed(NamedTuple):
+class EndedContact(NamedTuple):
     """A contact with a compliant stop that has ended."""
 
     t_touch: mpf
@@ -59,8 +59,8 @@ class Closed(NamedTuple):
 
 class Orbit(NamedTuple):
     events: list[Event]
-    rests: list[Span]
-    contacts: list[Closed]
+    rests: list[Rest]
+    contacts: list[EndedContact]
     section: list[list]  # states of the masses at t = 0 mod T
     places: list[tuple]  # at the sections: s of each compliant stop that relaxes, in the order of the elements
     end: list  # the state of the masses at the end
@@ -224,7 +224,7 @@ class Motion:
         t_touch, t_release, v_touch, v_release, depth, force = map(
             from_ball, (t, self.t, v_touch, v, *self.peaks.pop(e))
         )
-        self.contacts.append(Closed(t_touch, t_release, side, v_touch, v_release, depth, force, number))
+        self.contacts.append(EndedContact(t_touch, t_release, side, v_touch, v_release, depth, force, number))
 
     def relax(self, e):
         """The stop relaxes from where it is."""
@@ -243,7 +243,7 @@ class Motion:
 
     def end_rest(self, e, t_on):
         element = self.phases.elements[e]
-        self.rests.append(Span(t_on, from_ball(self.t), element.law.side, element.number))
+        self.rests.append(Rest(t_on, from_ball(self.t), element.law.side, element.number))
 
 
 def largest_within(c, u):

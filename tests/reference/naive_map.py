@@ -9,7 +9,9 @@ oscillator as `naive.py` simulates it; a quarter of a period of free flight on.
 from mpmath import mp, mpf
 
 from reference import naive
+from reference.flow import matrix_of
 from reference.gmp import expm
+from reference.machine import machine_of
 
 
 class AnyNaiveMap:
@@ -21,13 +23,8 @@ class AnyNaiveMap:
         square = lambda rows: mp.matrix([[mpf(x) for x in row] for row in rows])  # noqa: E731
         M, K, C = (square(matrix) for matrix in (q.M, q.K, q.C))
         self.omega, self.order, self.q = mpf(q.omega), order, q
-        self.A = mp.zeros(2 * n)
-        inverse = mp.inverse(M)
-        for i in range(n):
-            self.A[2 * i, 2 * i + 1] = 1
-            for j in range(n):
-                self.A[2 * i + 1, 2 * j], self.A[2 * i + 1, 2 * j + 1] = -(inverse * K)[i, j], -(inverse * C)[i, j]
-        push = inverse * column(q.normal)
+        self.A = matrix_of(machine_of(q))[: 2 * n, : 2 * n]
+        push = mp.inverse(M) * column(q.normal)
         push /= (column(q.normal).T * push)[0]
         self.push, self.normal = mp.zeros(2 * n, 1), mp.zeros(1, 2 * n)
         for i in range(n):

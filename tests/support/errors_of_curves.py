@@ -1,4 +1,4 @@
-"""Stated errors of points of codimension two of random systems, held against shooting in 30 digits.
+"""Stated errors of points of codimension two of random systems, held against many digits (tests/reference/conditions.py).
 
 PYTHONPATH=tests python tests/support/errors_of_curves.py 0 100     # a line for each point, and a summary
 """
@@ -47,7 +47,7 @@ def ratios(seed: int) -> list[float]:
             continue  # equations are singular there (test_crossed_curves.py)
         for types, most in MOST_IMPACTS.items():
             if special.type in types and len(special.orbit.impacts) <= most:
-                exact = exact_codimension_two(special, 30) if types is OF_MONODROMY else {"": error_of(special, 30)}
+                exact = exact_codimension_two(special) if types is OF_MONODROMY else {"": error_of(special)}
                 result += [value / special.error for value in exact.values()]
     return result
 
