@@ -1,4 +1,4 @@
-"""Stated errors of points of codimension two of random systems, held against many digits (tests/reference/conditions.py).
+"""Stated errors of points of codimension two of random systems against many digits (tests/reference/conditions.py).
 
 PYTHONPATH=tests python tests/support/errors_of_curves.py 0 100     # a line for each point, and a summary
 """
