@@ -1,15 +1,15 @@
 """The reference itself against closed forms, and against the values of ties: several things at one instant."""
 
 import copy
-from pathlib import Path
 
 import pytest
 import yaml
 from mpmath import mp, mpf
 from reference.events import simulate
 from reference.machine import Contact, Friction, Harmonic, Machine, Stop
+from support import ROOT
 
-TIES = yaml.safe_load((Path(__file__).parent / "cases" / "ties.yaml").read_text())
+TIES = yaml.safe_load((ROOT / "tests" / "cases" / "ties.yaml").read_text())
 DOUBLES = mpf(2) ** -50  # the numbers of the ties are rounded
 CLOSE = mpf("1e-28")
 
