@@ -50,7 +50,7 @@ myst_heading_anchors = 4
 nb_execution_mode = "force"
 nb_execution_raise_on_error = True
 nb_execution_in_temp = True
-nb_execution_timeout = 300
+nb_execution_timeout = 900
 nb_execution_show_tb = True
 # Output that comes in several pieces is joined; `nb_merge_streams` would break lines where they meet.
 NotebookClient.__init__ = partialmethod(NotebookClient.__init__, coalesce_streams=True)

@@ -260,8 +260,10 @@ def test_where_a_contact_vanishes_on_a_curve_the_others_keep_their_speeds():
     (point,) = points(vs.bifurcation_curve(flip, NAMES, [(0.7 * value, 1.3 * value) for value in values]), "flip_graze")
     contacts = point.orbit.contacts
     whole = point.orbit._solution
-    order = np.argsort(whole.times % whole.P)
-    assert whole.pushes[order] == pytest.approx(np.abs(contacts["v_touch"][np.argsort(contacts["t_touch"])]), abs=1e-12)
+    pushes = whole.pushes[np.argsort(whole.times % whole.P)]
+    speeds = np.abs(contacts["v_touch"][np.argsort(contacts["t_touch"])])
+    first = int(np.argmax(pushes)) - int(np.argmax(speeds))  # a touch at t = 0 may be the last one
+    assert pushes == pytest.approx(np.roll(speeds, first), abs=1e-12)
     assert {one.type for one in vs.switch(point)} == {"flip", "graze"}
 
 

@@ -10,12 +10,11 @@ from support.oscillators import PAPER
 
 import vibro_sweep as vs
 from vibro_sweep.analysis.branches.criticality import criticality
-from vibro_sweep.analysis.continuation.starting_orbit import KINDS
+from vibro_sweep.analysis.continuation.starting_orbit import KINDS, Start
 from vibro_sweep.analysis.curves import born
 from vibro_sweep.analysis.curves.curve_points import others_outside
 from vibro_sweep.analysis.periodic.periodic_orbit import orbit_of
 from vibro_sweep.engine.continuation.conditions import TORUS
-from vibro_sweep.types import Start
 
 BOXES = {("b", "omega"): ((0.3, 9), (0.5, 0.8)), ("b", "R"): ((0.3, 9), (0.3, 0.99))}
 

@@ -31,6 +31,8 @@ class Sink:
             raise self._fault
 
     def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
+        if self._file.closed:  # after a second Ctrl-C HDF5 lets go of it late: nothing is written then
+            return offset
         return self._file.seek(offset, whence)
 
     def tell(self) -> int:
@@ -52,7 +54,7 @@ class Sink:
         self._try(self._file.flush)
 
     def _try(self, action) -> None:
-        if self._fault is None:
+        if self._fault is None and not self._file.closed:
             try:
                 action()
             except OSError as error:

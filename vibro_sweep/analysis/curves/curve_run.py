@@ -51,7 +51,7 @@ class CurveRun:
         a = path.a
         copy(self.first, path.first)
         copy(self.first, a)
-        a.tests[TEST.length], path.before[0] = w.step_factor * FIRST_STEP, 0.0
+        a.tests[TEST.length], path.before[0] = min(w.step_factor, 1.0) * FIRST_STEP, 0.0
         while passed < MOST_POINTS:
             path.counts[0] = passed
             reason, count = w.take_steps(b), int(path.counts[1])
