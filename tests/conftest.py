@@ -6,7 +6,7 @@ import os
 import re
 import signal
 import sys
-from collections import Counter, defaultdict
+from collections import Counter
 
 import pytest
 
@@ -105,9 +105,8 @@ def unexpected_skips(config) -> list[str]:
 
 @pytest.hookimpl(wrapper=True, tryfirst=True)
 def pytest_collection_modifyitems(items):
-    """Slow are the other cases of tests that are marked `few`; then, without slow tests, what comes first: the files
-    above, and those with most tests, so that no worker is left with many in the end."""
-    mark_all_but_a_few(items)
+    """Without slow tests: the files above come first, and then those with most tests, so that no worker is left with
+    many in the end."""
     result, tests = (yield), Counter(item.path for item in items)
 
     def place(item):
@@ -116,19 +115,6 @@ def pytest_collection_modifyitems(items):
 
     items.sort(key=place)
     return result
-
-
-def mark_all_but_a_few(items):
-    cases = defaultdict(list)
-    for item in items:
-        if item.get_closest_marker("few") and not {"slow", "soak"} & {mark.name for mark in item.iter_markers()}:
-            cases[item.parent.nodeid, item.originalname].append(item)
-    for some in cases.values():
-        (few,) = some[0].get_closest_marker("few").args
-        fast = {k * len(some) // few for k in range(few)}
-        for k, item in enumerate(some):
-            if k not in fast:
-                item.add_marker(pytest.mark.slow)
 
 
 def pytest_collection_finish():

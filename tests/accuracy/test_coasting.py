@@ -121,8 +121,7 @@ def test_below_grazing_no_orbit_is_clear():
         assert not clear(engine.flight.oscillator[0], engine.orbit[0])
 
 
-@pytest.mark.few(1)
-@pytest.mark.parametrize("periods", [1, 1000, *slow_cases(2, 7)])
+@pytest.mark.parametrize("periods", [1, *slow_cases(2, 7, 1000)])
 def test_the_state_after_many_periods(periods):
     for system, A, steady, engine, state in cases(orbits=1):
         fly(engine.flight.oscillator[0], engine.flight.nodes, engine.orbit[0], periods)

@@ -10,6 +10,7 @@ from reference.flow import FREE, HELD, matrix_of
 from reference.follow import DIGITS, Follower
 from reference.gmp import expm
 from reference.machine import machine_of
+from support import sample
 
 import vibro_sweep as vs
 
@@ -47,10 +48,7 @@ def test_motion_solves_the_equations(params):
     assert abs(rest.pull.derivatives(u, 1)[0] - pull) < mpf("1e-45")
 
 
-@pytest.mark.few(1)
-@pytest.mark.parametrize(
-    "params", [pytest.param(p, marks=[pytest.mark.slow] * (p["mu_m"] < 0.01)) for p in SYSTEMS], ids=str
-)
+@pytest.mark.parametrize("params", sample(1, SYSTEMS), ids=str)
 def test_impacts_as_the_slow_simulator_has_them(params):
     """Its impacts pass for an engine's, and one moved, left out or added does not."""
     state = tuple(params["b"] * x for x in STATE)
@@ -125,8 +123,7 @@ def contact_of_order(order, rng):
                 return params, state, float(begin)
 
 
-@pytest.mark.few(6)
-@pytest.mark.parametrize("order, seed", [(3, seed) for seed in range(6)] + [(4, seed) for seed in range(12)])
+@pytest.mark.parametrize("order, seed", sample(6, [(3, seed) for seed in range(6)] + [(4, seed) for seed in range(12)]))
 def test_contact_without_speed_and_acceleration(order, seed):
     """Also without jerk (order 4): the orbit goes on as the exact one does, with an impact within rounding or none."""
     params, state, start_time = contact_of_order(order, np.random.default_rng(seed))

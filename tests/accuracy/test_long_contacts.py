@@ -7,7 +7,7 @@ those in many digits.
 import numpy as np
 import pytest
 from mpmath import mp, mpf
-from support import compliant_exponents, slow_cases
+from support import compliant_exponents, sample, slow_cases
 from support.compliant_contacts import LEAST, judged
 
 import vibro_sweep as vs
@@ -39,10 +39,10 @@ def exponents(system):
         return np.array(sorted((float(mp.re(one)) for one in mp.eig(A)[0]), reverse=True))
 
 
-@pytest.mark.few(4)
 @pytest.mark.parametrize("masses", [*slow_cases(2, 3, 4), 1])
-@pytest.mark.parametrize("release", ["displacement", "force"])
-@pytest.mark.parametrize("k, z", LAWS)
+@pytest.mark.parametrize(
+    "k, z, release", sample(4, [(*law, release) for law in LAWS for release in ("displacement", "force")])
+)
 def test_exponents_of_a_mass_that_stays_on_its_stop(masses, k, z, release):
     system = chain(masses, k, z, release)
     data = vs.sweep(
@@ -56,10 +56,9 @@ def test_exponents_of_a_mass_that_stays_on_its_stop(masses, k, z, release):
     assert np.all(error <= 3 * data.lyapunov_error.values)
 
 
-@pytest.mark.few(1)
 @pytest.mark.parametrize("masses", [*slow_cases(2, 3), 1])
-@pytest.mark.parametrize("k, z", [(400, 0.3), *slow_cases((400, 1.5)), (16, 5)])
-@pytest.mark.parametrize("release", ["displacement", "force"])
+@pytest.mark.parametrize("k, z", [(400, 0.3), *slow_cases((400, 1.5), (16, 5))])
+@pytest.mark.parametrize("release", ["displacement", *slow_cases("force")])
 def test_exponents_of_long_contacts_that_end(masses, k, z, release):
     """A force presses the mass on its stop, and tears it off each period."""
     force = 6 * np.eye(masses)[0]
@@ -69,11 +68,10 @@ def test_exponents_of_long_contacts_that_end(masses, k, z, release):
     assert np.all(report.errors <= 3 * report.stated) and report.stated.max() < 1e-11
 
 
-@pytest.mark.few(1)
 @pytest.mark.parametrize(
     "masses, k, z", [(1, 1e4, 0.5), *slow_cases((1, 1e6, 0.2), (2, 1e4, 1.5), (3, 1e4, 0.3), (2, 100, 12))]
 )
-@pytest.mark.parametrize("release", ["displacement", "force"])
+@pytest.mark.parametrize("release", ["displacement", *slow_cases("force")])
 def test_long_contacts_in_many_digits(masses, k, z, release):
     system = chain(masses, k, z, release, force=6 * np.eye(masses)[0], constant=2 * np.eye(masses)[0])
     start = np.zeros(2 * masses)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from reference.closed_orbit import ClosedOrbit, impacts_of
 from reference.machine import machine_of
-from support import slow_cases
+from support import sample, slow_cases
 from support.scene_texts import parsed
 
 import vibro_sweep as vs
@@ -37,10 +37,9 @@ def point(tmp_path, values, transient):
     return data.isel(b=0)
 
 
-@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("values", "transient"),
-    [*CASES[:3], *slow_cases(*CASES[3:])],
+    sample(1, CASES),
     ids=lambda value: f"b={value['b']}" if isinstance(value, dict) else None,
 )
 def test_against_forty_digits(tmp_path, values, transient):

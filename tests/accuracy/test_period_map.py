@@ -11,6 +11,7 @@ from mpmath import mp, mpf
 from reference import naive
 from reference.closed_orbit import ClosedOrbit, impacts_of
 from reference.machine import machine_of
+from support import sample, slow_cases
 from support.quotients import DIGITS, STEP, quotient
 
 import vibro_sweep as vs
@@ -89,18 +90,10 @@ CASES = {
 }
 
 
-LONG = {
-    "chatter and rests",
-    "one mode overdamped",
-    "at rest in the end",
-    "many impacts",
-    "three halves",
-    "left stop",
-}  # for the slow simulator
-
-
-@pytest.mark.few(2)
-@pytest.mark.parametrize("case", [pytest.param(case, marks=[pytest.mark.slow] * (case in LONG)) for case in CASES])
+@pytest.mark.parametrize(
+    "case",
+    ["no impact", "right stop", *slow_cases(*(case for case in CASES if case not in ("no impact", "right stop")))],
+)
 def test_derivatives_against_thirty_digits(case):
     params, state, periods, sides, rests = CASES[case]
     mapped = compare(params, state, periods)
@@ -147,8 +140,7 @@ def test_start_at_rest_on_a_stop():
             np.testing.assert_allclose(column, [float(x / h) for x in there], rtol=0, atol=1e-10)
 
 
-@pytest.mark.few(1)
-@pytest.mark.parametrize("depth", [1e-2, 1e-5, 1e-8])
+@pytest.mark.parametrize("depth", sample(1, [1e-2, 1e-5, 1e-8]))
 def test_next_to_a_graze(depth):
     """Entries grow like 1/v1; rounding of the state acts on them like 1/v1^2."""
     state = (0.3, 0.5, -0.2, 0.1)

@@ -42,7 +42,6 @@ LIGHT = [
     dict(mu_m=1e-5, mu_k=3.0, zeta=1e-7, f2=0.2, omega=0.02, R=0.5, b=0.1, tau=0.5),
     dict(mu_m=1e-3, mu_k=0.5, zeta=0.8, f2=0.5, omega=0.003, R=0.5, b=0.1, tau=0.5),
 ]
-QUICK = [CASES[i] for i in (1, 5, 13, 18)]
 
 
 def compare(case, digits=30):
@@ -79,10 +78,9 @@ def compare(case, digits=30):
     return len(exact.sticking), worst
 
 
-@pytest.mark.few(2)
-@pytest.mark.parametrize("case", QUICK)
-def test_rests(case):
-    rests, worst = compare((*case[:2], 2))
+@pytest.mark.parametrize("place", [1, 13, *slow_cases(5, 18)])
+def test_rests(place):
+    rests, worst = compare((*CASES[place][:2], 2))
     assert rests > 0
     assert worst < 1e-10
 

@@ -5,6 +5,7 @@ The same orbits on a grid that resolves every rate are the independent truth: th
 
 import numpy as np
 import pytest
+from support import sample
 
 import vibro_sweep as vs
 from vibro_sweep.engine.tables import cells as tables
@@ -58,10 +59,9 @@ def test_a_coarse_grid_makes_no_difference(grid, changes, cells):
     np.testing.assert_allclose(spectra[1], spectra[0], rtol=0, atol=1e-11)
 
 
-@pytest.mark.few(1)
 @pytest.mark.parametrize(
     "changes",
-    [dict(mu_m=1e-3, zeta=0.3), dict(mu_m=1e-4), dict(mu_k=1e6), dict(omega=1e-4)],
+    sample(1, [dict(mu_m=1e-3, zeta=0.3), dict(mu_m=1e-4), dict(mu_k=1e6), dict(omega=1e-4)]),
     ids=str,
 )
 def test_stiff_systems_as_on_a_fine_grid(grid, changes):

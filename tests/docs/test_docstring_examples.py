@@ -5,7 +5,7 @@ import inspect
 import re
 
 import pytest
-from support import ROOT
+from support import ROOT, sample
 
 import vibro_sweep as vs
 from vibro_sweep import types
@@ -25,8 +25,7 @@ def with_methods():
                     yield f"{name}.{method}", function
 
 
-@pytest.mark.few(12)
-@pytest.mark.parametrize("name, one", [*with_methods()])
+@pytest.mark.parametrize("name, one", sample(12, [*with_methods()]))
 def test_an_example_gives_what_it_shows(name, one, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     examples = doctest.DocTestParser().get_examples(inspect.getdoc(one))

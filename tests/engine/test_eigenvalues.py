@@ -4,6 +4,7 @@ import mpmath
 import numpy as np
 import pytest
 from numpy.random import default_rng
+from support import sample
 
 from vibro_sweep.engine.simd.jit import exported
 from vibro_sweep.engine.variational.eigenvalues import eigenvalues
@@ -71,8 +72,7 @@ COUPLINGS = {  # of two groups of modes, beside those within a group, which are 
 }
 
 
-@pytest.mark.few(2)
-@pytest.mark.parametrize("coupled", COUPLINGS)
+@pytest.mark.parametrize("coupled", sample(2, COUPLINGS))
 def test_small_eigenvalues_of_graded_matrices_keep_their_digits(coupled):
     """D^1/2 B D^1/2 with D from 1e6 to 1e-24 and a well-conditioned B, as products of factors give it."""
     rng, coupling = default_rng(3), COUPLINGS[coupled]

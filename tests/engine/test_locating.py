@@ -1,6 +1,7 @@
 """Where ends and bifurcations of a branch lie."""
 
 import pytest
+from support import sample
 from support.oscillators import BALL, CAVITY, ONE_MASS, PAPER
 
 import vibro_sweep as vs
@@ -30,8 +31,7 @@ def orbit_of(system, itinerary):
     return orbit
 
 
-@pytest.mark.few(3)
-@pytest.mark.parametrize(("system", "itinerary", "name", "bounds"), ORBITS, ids=IDS)
+@pytest.mark.parametrize(("system", "itinerary", "name", "bounds"), sample(3, ORBITS), ids=IDS)
 def test_special_points_are_where_their_equations_hold(system, itinerary, name, bounds):
     """Where a test vanishes along the branch, beside Newton's method for the orbit and the parameter at once, with the
     equation of the bifurcation."""

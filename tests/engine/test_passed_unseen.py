@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from support import slow_cases
+from support import sample, slow_cases
 from support.branches import exact, same_points, types
 from support.drawn_branches import Case
 from support.same_branch import follow, rows
@@ -160,8 +160,7 @@ def loaded():
     return Case(vs.switch(birth)[0], "b", bounds)
 
 
-@pytest.mark.few(1)
-@pytest.mark.parametrize("factor", [1, 2, 3])
+@pytest.mark.parametrize("factor", sample(1, [1, 2, 3]))
 def test_a_pair_that_becomes_two_of_which_a_flip_takes_one_back(loaded, factor):
     """All that within one long step: its ends differ by what a flip does, and a neutral saddle hides the torus."""
     kinds = [kind for kind, _ in types(follow(loaded, factor))]

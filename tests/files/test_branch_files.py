@@ -5,7 +5,7 @@ import jsonschema
 import numpy as np
 import pytest
 import xarray as xr
-from support import ROOT, slow_cases
+from support import ROOT, sample, slow_cases
 from support.programs import main
 from support.scene_texts import parsed
 from support.windows import SYSTEM
@@ -96,14 +96,16 @@ def test_two_workers_make_the_same_file(file, tmp_path):
     assert numbers(tmp_path / "lr.h5") == numbers(file)
 
 
-@pytest.mark.few(1)
 @pytest.mark.parametrize(
     "begin, parameter, number",
-    [
-        ("free", RANGE.replace("0.3", "1.5"), 1),
-        ("{grazing: 1}", "{b: [6, 7]}", 2),  # RL, and of the mirror images R and L one
-        ("{state: {x1: 3.0, v1: 0.3, x2: 1, v2: 0}, periods: 1}", "{b: [1.5, 2.5]}", 1),
-    ],
+    sample(
+        1,
+        [
+            ("free", RANGE.replace("0.3", "1.5"), 1),
+            ("{grazing: 1}", "{b: [6, 7]}", 2),  # RL, and of the mirror images R and L one
+            ("{state: {x1: 3.0, v1: 0.3, x2: 1, v2: 0}, periods: 1}", "{b: [1.5, 2.5]}", 1),
+        ],
+    ),
 )
 def test_other_beginnings(begin, parameter, number, tmp_path):
     numbers = NUMBERS.replace("b: 2", "b: 6.75") if begin == "free" or "grazing" in begin else NUMBERS

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from support import sample
 from support.scene_texts import parsed
 from support.windows import SYSTEM, few  # noqa: F401
 
@@ -113,16 +114,18 @@ def test_the_numbers_of_the_oscillator_are_those_of_the_special_point(few, tmp_p
         assert along.min() <= value <= along.max()
 
 
-@pytest.mark.few(2)
 @pytest.mark.parametrize(
     "numbers, start, stop, key, words",
-    [
-        (NUMBERS.replace("0.8", "0.7"), 5.2, 6.8, "b", r"R = 0\.7 in system, and 0\.8 in .*few\.h5"),
-        (NUMBERS + ", stops: right", 5.2, 6.8, "b", "stops = 'right' in system, and 'both' in "),
-        (NUMBERS + ", tau: 1", 5.2, 6.8, "b", r"tau = 1\.0 in system, and 'grazing' in "),
-        (NUMBERS, 0.6, 0.7, "omega", "parameter: 'omega' is not allowed; it must be b"),
-        (NUMBERS, 1.2, 1.8, "b", r"continue\.from\.sweep: no orbit of \S+ with b in 1\.2 \.\. 1\.8"),
-    ],
+    sample(
+        2,
+        [
+            (NUMBERS.replace("0.8", "0.7"), 5.2, 6.8, "b", r"R = 0\.7 in system, and 0\.8 in .*few\.h5"),
+            (NUMBERS + ", stops: right", 5.2, 6.8, "b", "stops = 'right' in system, and 'both' in "),
+            (NUMBERS + ", tau: 1", 5.2, 6.8, "b", r"tau = 1\.0 in system, and 'grazing' in "),
+            (NUMBERS, 0.6, 0.7, "omega", "parameter: 'omega' is not allowed; it must be b"),
+            (NUMBERS, 1.2, 1.8, "b", r"continue\.from\.sweep: no orbit of \S+ with b in 1\.2 \.\. 1\.8"),
+        ],
+    ),
 )
 def test_what_does_not_fit_is_refused(few, tmp_path, numbers, start, stop, key, words):  # noqa: F811
     """And nothing is left behind."""

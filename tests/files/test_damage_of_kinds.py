@@ -7,7 +7,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from support import damage, slow_cases
+from support import damage, sample, slow_cases
 from support.changed_files import LONG, bit_in_chunk, chunked
 from support.kinds_of_files import KINDS, PERIODIC
 from support.programs import main
@@ -63,9 +63,8 @@ def test_a_changed_digit_of_a_periodic_orbit(kinds, tmp_path):
             vs.load(path)
 
 
-@pytest.mark.few(1)
 @pytest.mark.parametrize(
-    "attribute", ["kind", "provenance", *slow_cases("scene", "quantities", "parameters", "title", "format")]
+    "attribute", ["kind", *slow_cases("provenance", "scene", "quantities", "parameters", "title", "format")]
 )
 def test_long_texts_are_shortened(kinds, tmp_path, monkeypatch, attribute):
     monkeypatch.chdir(tmp_path)
@@ -99,14 +98,7 @@ REFUSED_LATE = {  # kind of the file, its dataset or attribute, the value in it,
 }
 
 
-@pytest.mark.few(1)
-@pytest.mark.parametrize(
-    "case",
-    [
-        pytest.param(case, marks=pytest.mark.slow if kind in ("branches", "plane") else ())
-        for case, (kind, *_) in REFUSED_LATE.items()
-    ],
-)
+@pytest.mark.parametrize("case", sample(1, REFUSED_LATE))
 def test_what_is_refused_late_names_the_file(kinds, tmp_path, monkeypatch, case):
     """Whatever computes from it, on the command line and in Python."""
     monkeypatch.chdir(tmp_path)

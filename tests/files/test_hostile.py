@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from support import slow_cases
+from support import sample, slow_cases
 from support.files import OBSTACLES, SCENE, TEXT, refused, seen
 from support.programs import main
 from support.scenes import arrays_of, assert_same_bits
@@ -18,8 +18,7 @@ from vibro_sweep import store
 # Readers write nothing
 
 
-@pytest.mark.few(1)
-@pytest.mark.parametrize("name", ["x.h5", "y.h5.part", "victim.h5"])
+@pytest.mark.parametrize("name", sample(1, ["x.h5", "y.h5.part", "victim.h5"]))
 def test_readers_change_nothing(folder, capsys, name):
     (folder / "victim").write_text("years of work")
     (folder / "victim.h5").symlink_to("victim")

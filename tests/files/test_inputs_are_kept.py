@@ -6,7 +6,7 @@ from pathlib import Path
 
 import h5py
 import pytest
-from support import slow_cases
+from support import sample, slow_cases
 from support.programs import main
 
 import vibro_sweep as vs
@@ -60,24 +60,26 @@ def contents(folder) -> dict[str, bytes]:
     return {str(path): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
 
 
-@pytest.mark.few(5)
 @pytest.mark.parametrize(
     "command",
-    [
-        "run br.yaml -o s.h5 --overwrite",
-        "run br.yaml -o hard.h5 --overwrite",
-        "run br.yaml -o deep/../s.h5 --overwrite",
-        "run more.yaml -o br.h5 --overwrite",
-        "run more.yaml -o again.h5 --resume",
-        "run s.yaml -o scene.h5 --overwrite",
-        "run scene.h5 -o s.yaml --overwrite",
-        "windows s.h5 -o s.h5 --overwrite",
-        "windows s.h5 -o hard.h5 --overwrite",
-        "run br.yaml -o nowhere/x.h5",
-        "run s.yaml -o new/",
-        "windows s.h5 -o new/",
-        "plot s.h5 -o new/",
-    ],
+    sample(
+        5,
+        [
+            "run br.yaml -o s.h5 --overwrite",
+            "run br.yaml -o hard.h5 --overwrite",
+            "run br.yaml -o deep/../s.h5 --overwrite",
+            "run more.yaml -o br.h5 --overwrite",
+            "run more.yaml -o again.h5 --resume",
+            "run s.yaml -o scene.h5 --overwrite",
+            "run scene.h5 -o s.yaml --overwrite",
+            "windows s.h5 -o s.h5 --overwrite",
+            "windows s.h5 -o hard.h5 --overwrite",
+            "run br.yaml -o nowhere/x.h5",
+            "run s.yaml -o new/",
+            "windows s.h5 -o new/",
+            "plot s.h5 -o new/",
+        ],
+    ),
 )
 def test_a_command_leaves_its_inputs_alone(folder, capsys, command):
     before = contents(folder)
@@ -120,13 +122,15 @@ def test_a_picture_replaces_nothing_that_it_shows(folder, capsys):
     assert contents(folder) == before
 
 
-@pytest.mark.few(1)
 @pytest.mark.parametrize(
     "name, dataset, command",
     [
         ("w.h5", "window_lower", "windows s.h5"),
-        ("br.h5", "branch_ends", "run br.yaml"),
-        *slow_cases(("w.h5", "window_lo", "windows s.h5"), ("br.h5", "b", "run br.yaml")),
+        *slow_cases(
+            ("br.h5", "branch_ends", "run br.yaml"),
+            ("w.h5", "window_lo", "windows s.h5"),
+            ("br.h5", "b", "run br.yaml"),
+        ),
     ],
 )
 def test_a_damaged_file_is_not_complete_and_resume_mends_it(folder, capsys, name, dataset, command):
@@ -144,18 +148,20 @@ def test_a_damaged_file_is_not_complete_and_resume_mends_it(folder, capsys, name
     assert numbers(name) == whole
 
 
-@pytest.mark.few(2)
 @pytest.mark.parametrize(
     "name, edit",
-    [
-        ("br.h5", lambda file: file.__delitem__("unstable")),
-        ("br.h5", lambda file: file["special_point"].__setitem__(0, 10**6)),
-        ("br.h5", lambda file: file["special_type"].__setitem__(0, 99)),
-        ("br.h5", lambda file: file["branch_row_size"].__setitem__(0, 1)),
-        ("w.h5", lambda file: file["window_lower"].__setitem__(0, 10**6)),
-        ("w.h5", lambda file: file["orbit_reason"].__setitem__(0, -1)),
-        ("w.h5", lambda file: file.__delitem__("window_symmetric")),
-    ],
+    sample(
+        2,
+        [
+            ("br.h5", lambda file: file.__delitem__("unstable")),
+            ("br.h5", lambda file: file["special_point"].__setitem__(0, 10**6)),
+            ("br.h5", lambda file: file["special_type"].__setitem__(0, 99)),
+            ("br.h5", lambda file: file["branch_row_size"].__setitem__(0, 1)),
+            ("w.h5", lambda file: file["window_lower"].__setitem__(0, 10**6)),
+            ("w.h5", lambda file: file["orbit_reason"].__setitem__(0, -1)),
+            ("w.h5", lambda file: file.__delitem__("window_symmetric")),
+        ],
+    ),
 )
 def test_an_edited_file_is_refused(folder, capsys, name, edit):
     with h5py.File(name, "r+") as file:

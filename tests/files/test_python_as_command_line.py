@@ -5,7 +5,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
-from support import ROOT, slow_cases
+from support import ROOT, sample, slow_cases
 from support.programs import main
 
 import vibro_sweep as vs
@@ -60,8 +60,7 @@ def test_the_graze_of_a_scene_of_branches_is_that_of_its_oscillator(folder, caps
     assert "b*    = 6.7057167409730" in capsys.readouterr().out
 
 
-@pytest.mark.few(1)
-@pytest.mark.parametrize("of, command", [("sweep", "run"), ("lr", "run"), ("sweep", "windows")])
+@pytest.mark.parametrize("of, command", sample(1, [("sweep", "run"), ("lr", "run"), ("sweep", "windows")]))
 def test_files_are_those_of_the_command_line(folder, tmp_path, of, command):
     given, made = ("sweep.h5", "sweep.windows.h5") if command == "windows" else (f"{of}.yaml", f"{of}.h5")
     assert main([command, str(folder / given), "-o", str(tmp_path / "file.h5"), "--quiet"]) == 0
@@ -158,8 +157,8 @@ def test_what_is_not_a_sweep_has_no_windows(folder):
 
 OPTIONS = [
     ({}, []),
-    ({"kind": "iteration", "at": {"b": 6.7}}, ["--kind", "iteration", "--at", "b=6.7"]),
     *slow_cases(
+        ({"kind": "iteration", "at": {"b": 6.7}}, ["--kind", "iteration", "--at", "b=6.7"]),
         ({"size": (5, 3), "dpi": 80}, ["--size", "5", "3", "--dpi", "80"]),
         ({"xlim": (6.6, 6.8), "ylim": (-1, 1)}, ["--xlim", "6.6", "6.8", "--ylim", "-1", "1"]),
         ({"width": 85, "variable": "v1"}, ["--width", "85", "--variable", "v1"]),
@@ -168,7 +167,6 @@ OPTIONS = [
 ]
 
 
-@pytest.mark.few(1)
 @pytest.mark.parametrize("options, given", OPTIONS)
 def test_pictures_are_those_of_the_command_line(folder, tmp_path, monkeypatch, options, given):
     monkeypatch.chdir(folder)

@@ -55,7 +55,6 @@ def made(request, tmp_path_factory):
     return request.param, path
 
 
-@pytest.mark.few(2)
 def test_xarray_opens_it(made):
     """The dimensions of the contract, a coordinate for each, and no dataset that nobody asked for."""
     kind, path = made

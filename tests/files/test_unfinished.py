@@ -5,6 +5,7 @@ import subprocess
 import sys
 
 import pytest
+from support import sample
 from support.files import described
 from support.stored import ALL, IMPACTS, LYAPUNOV, PLANE, SECTION, SWEEP, broken_off, scene_of
 
@@ -14,8 +15,7 @@ from vibro_sweep.driver import blocks, compute
 from vibro_sweep.driver.provenance import provenance
 
 
-@pytest.mark.few(1)
-@pytest.mark.parametrize("part", [False, True])
+@pytest.mark.parametrize("part", sample(1, [False, True]))
 def test_what_is_opened_can_be_copied_and_sent(path, part):
     scene = scene_of(PLANE + ALL)
     path = broken_off(scene, path) if part else vs.run(scene, path) and path

@@ -4,7 +4,7 @@ import copy
 
 import numpy as np
 import pytest
-from support import slow_cases
+from support import sample, slow_cases
 
 from golden import births, branches, checking, curves, onsets, records, searches, windows
 from golden.motions import system_of
@@ -33,8 +33,7 @@ def wrong(kind: str, records: dict) -> dict[str, list[str]]:
     return {name: lines for name, lines in found.items() if lines}
 
 
-@pytest.mark.few(1)
-@pytest.mark.parametrize("kind", [kind for kind in FEW if FEW[kind]])
+@pytest.mark.parametrize("kind", sample(1, [kind for kind in FEW if FEW[kind]]))
 def test_a_few(kind):
     assert wrong(kind, chosen(kind, lambda record: record["name"] in FEW[kind])) == {}
 
@@ -154,8 +153,7 @@ def one_with_contacts():
     return record, branches.followed(record)
 
 
-@pytest.mark.few(2)
-@pytest.mark.parametrize("change", [*CHANGES[:5], *slow_cases(*CHANGES[5:])])
+@pytest.mark.parametrize("change", sample(2, CHANGES))
 def test_the_comparison_sees(one, change):
     seen(*one, change)
 

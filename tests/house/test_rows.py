@@ -1,7 +1,7 @@
 """Tables of cases are read as they are written: groups, ids, and which rows are slow."""
 
 import pytest
-from support import cases
+from support import cases, sample
 
 TABLE = """
 - {id: first, value: 1}
@@ -45,3 +45,10 @@ def test_slow_are_rows_that_say_so_and_those_out_of_the_sample(rows):
 def test_an_id_that_is_given_twice_is_an_error():
     with pytest.raises(ValueError, match="'first'"):
         cases.read(TABLE.replace("last", "first"))
+
+
+@pytest.mark.parametrize("n, fast", [(0, []), (1, [0]), (2, [0, 2]), (3, [0, 1, 3]), (5, [0, 1, 2, 3, 4])])
+def test_a_sample_is_spread_over_all_cases(n, fast):
+    params = sample(n, [1, (2, 3), "four", {}, None])
+    assert [param.values for param in params] == [(1,), (2, 3), ("four",), ({},), (None,)]
+    assert [k for k, param in enumerate(params) if not param.marks] == fast

@@ -4,12 +4,13 @@ Those of two masses are slow: their kernels serve no other fast test.
 """
 
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 import pytest
 from reference.closed_orbit import ClosedOrbit, contacts_of
 from reference.machine import machine_of
-from support import slow_cases
+from support import sample, slow_cases
 from support.compliant_bifurcations import PAPER, one_mass, paper
 
 import vibro_sweep as vs
@@ -221,9 +222,7 @@ SHORT = [
 ]
 
 
-@pytest.mark.few(6)
-@pytest.mark.parametrize("law", SHORT)
-@pytest.mark.parametrize("depth", [0.1, 0.02, 1e-3, 1e-5])
+@pytest.mark.parametrize("depth, law", sample(6, product([0.1, 0.02, 1e-3, 1e-5], SHORT)))
 def test_orbits_with_short_contacts_are_found(law, depth):
     """Next to the graze of the free motion, where those with rigid stops lead nowhere: the one that its branch has."""
     system = vs.Oscillator.named("one_mass", zeta=0.05, F=0.5, omega=0.9, b=0.6, stops="right", tau=0, **law)

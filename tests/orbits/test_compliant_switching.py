@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import fsolve
-from support import compliant_curves
+from support import compliant_curves, sample
 from support.compliant_branches import drawn_case
 from support.drawn_branches import Case
 from support.same_branch import follow
@@ -38,8 +38,7 @@ LAWS = [
 ]
 
 
-@pytest.mark.few(1)
-@pytest.mark.parametrize("law", LAWS, ids=str)
+@pytest.mark.parametrize("law", sample(1, LAWS), ids=str)
 def test_two_contacts_that_differ_vanish_together_where_the_free_motion_grazes(law):
     system = one_mass(**law)
     b = vs.grazing(system).b
@@ -72,8 +71,10 @@ def test_windows_of_stops_that_differ_end_where_the_free_motion_grazes():
     assert ends == [("LR", "boundary", "graze"), ("", "graze", "boundary")]
 
 
-@pytest.mark.few(1)
-@pytest.mark.parametrize("flips, other, bounds, count", [([0, 1], "b", (0.1, 2), 4), ([1], "k_stop", (5, 2000), 1)])
+@pytest.mark.parametrize(
+    "flips, other, bounds, count",
+    sample(1, [([0, 1], "b", (0.1, 2), 4), ([1], "k_stop", (5, 2000), 1)]),
+)
 def test_curves_of_doubled_orbits_with_contacts_begin_at_a_degenerate_flip(soft_branch, flips, other, bounds, count):
     """A flip, and the fold that begins there: its orbits of two periods have a multiplier 1, and it leads back."""
     along, known = ("omega", other), [one for one in soft_branch.special if one.type == "flip"]
@@ -112,8 +113,7 @@ def test_the_orbit_beside_a_graze_comes_to_it():
 BOTH = {"k_stop": 30.0, "k_stop_left": 30.0, "c_stop": 1.0, "c_stop_left": 1.0, "preload": 0.1, "preload_left": 0.1}
 
 
-@pytest.mark.few(2)
-@pytest.mark.parametrize("name", BOTH)
+@pytest.mark.parametrize("name", sample(2, BOTH))
 def test_a_symmetric_orbit_does_not_stay_so_along_a_number_of_one_stop(name):
     """Its branch said ok of halves of orbits that are not there."""
     orbit = vs.periodic_orbit(one_mass(b=0.8, tau=0.3, **BOTH), itinerary="LR")
@@ -196,8 +196,7 @@ def test_a_curve_keeps_within_its_bounds_where_a_preload_vanishes(soft_branch, t
     assert vs.load(tmp_path / "curve.h5").points.equals(curve.points)
 
 
-@pytest.mark.few(1)
-@pytest.mark.parametrize("bounds", [(20, 3e8), (1, 1e9)])
+@pytest.mark.parametrize("bounds", sample(1, [[20, 3e8], [1, 1e9]]))
 def test_a_branch_goes_from_soft_to_rigid_within_wide_bounds(bounds):
     branch = vs.continue_orbit(vs.periodic_orbit(one_stop(), itinerary="R"), "k_stop", bounds)
     assert branch.status == "ok"

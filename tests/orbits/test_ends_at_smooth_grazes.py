@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from support import sample
 from support.drawn_branches import Case
 from support.same_branch import follow
 
@@ -17,9 +18,8 @@ def of_the_free_motion(system):
     return np.exp(np.array([rate, rate.conjugate()]) * system.period)
 
 
-@pytest.mark.few(2)
 @pytest.mark.parametrize("system", [ELASTIC, DAMPED], ids=["elastic", "damped"])
-@pytest.mark.parametrize("upper", [2.5, 2.6, 3.0, 4.0])
+@pytest.mark.parametrize("upper", sample(1, [2.5, 2.6, 3.0, 4.0]))
 def test_all_bifurcations_are_kept_whatever_the_bounds(system, upper):
     """Where rounding made the last equations singular to the last bit all flips before were taken back."""
     branch = vs.continue_orbit(vs.periodic_orbit(system, itinerary="R"), "b", (0.5, upper))
@@ -29,9 +29,8 @@ def test_all_bifurcations_are_kept_whatever_the_bounds(system, upper):
     assert all(one.error < 1e-13 for one in branch.special)
 
 
-@pytest.mark.few(2)
 @pytest.mark.parametrize("system", [ELASTIC, DAMPED], ids=["elastic", "damped"])
-@pytest.mark.parametrize("before", [1e-4, 1e-6, 1e-8, 1e-10])
+@pytest.mark.parametrize("before", sample(1, [1e-4, 1e-6, 1e-8, 1e-10]))
 def test_bounds_just_before_the_graze_hold(system, before):
     """A step over the graze, at which the branch turns, ends within the bounds again."""
     upper = float(vs.grazing(system).b_right) - before

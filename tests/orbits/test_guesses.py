@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from support import slow_cases
 from support.any_oscillators import drawn
 from support.oscillators import PAPER
 
@@ -23,15 +24,11 @@ ORBITS = {
 }
 
 
-@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("name", "count"),
     [
         ("1 a half", 100),
-        ("4", 100),
-        ("10", 100),
-        pytest.param("10", 1000, marks=pytest.mark.slow),
-        pytest.param("three masses", 300, marks=pytest.mark.slow),
+        *slow_cases(("4", 100), ("10", 1000), ("three masses", 300)),
         *(pytest.param(name, 1000, marks=pytest.mark.soak) for name in ORBITS),
     ],
 )

@@ -5,7 +5,7 @@ import pytest
 from mpmath import mp, mpf
 from reference.closed_orbit import DIGITS, ClosedOrbit
 from reference.machine import machine_of
-from support import slow_cases
+from support import sample, slow_cases
 from support.compliant_bifurcations import distance_in_digits
 
 import vibro_sweep as vs
@@ -51,10 +51,9 @@ def grazes_at(branch, omega):
     return min(found, key=lambda one: abs(one.parameters["omega"] - omega))
 
 
-@pytest.mark.few(1)
-@pytest.mark.parametrize("c_stop, kinds", [
+@pytest.mark.parametrize("c_stop, kinds", sample(1, [
     (0.5, ("persistence", "persistence")), (2.0, ("persistence", "nonsmooth fold")),
-])  # fmt: skip
+]))  # fmt: skip
 def test_grazes_are_corners(c_stop, kinds):
     """The multipliers jump; where det(M - 1) changes its sign the orbits with the contact lie beside those without."""
     branch = branch_of("omega", (0.3, 3), c_stop=c_stop)

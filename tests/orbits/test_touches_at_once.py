@@ -5,6 +5,7 @@ from itertools import product
 import numpy as np
 import pytest
 from scipy.linalg import expm
+from support import sample, slow_cases
 
 import vibro_sweep as vs
 
@@ -58,8 +59,7 @@ def itineraries(omega, zeta, right, left):
     return both
 
 
-@pytest.mark.few(2)
-@pytest.mark.parametrize("omega, zeta, right, left", CASES)
+@pytest.mark.parametrize("omega, zeta, right, left", sample(2, CASES))
 def test_contacts_that_end_by_force(omega, zeta, right, left):
     amplitude = 1 / np.hypot(1 - omega**2, 2 * zeta * omega)
     inside, sign = (0.97, 1) if omega < 1 else (1.03, -1)  # where the amplitude is smaller; its growth with omega
@@ -87,20 +87,22 @@ def test_contacts_that_end_by_force(omega, zeta, right, left):
             assert np.sort(np.abs(ends[0].multipliers)) == pytest.approx(np.sort(np.abs(values)), rel=1e-9)
 
 
-@pytest.mark.few(4)
 @pytest.mark.parametrize(
     "stops, right, left",
-    [
-        ({"R": 0.7, "R_left": 0.5}, RIGID, RIGID),
-        ({"R": 0.3, "R_left": 0.9}, RIGID, RIGID),
-        ({"k_stop": 30, "R_left": 0.7}, 0, RIGID),
-        ({"k_stop": 30, "preload": 0.1, "k_stop_left": 20, "preload_left": 0}, RIGID, 0),
-        ({"k_stop": 30, "preload": 0.1, "k_stop_left": 20}, RIGID, RIGID),
-        ({"k_stop": 300, "c_stop": 8, "R_left": 0.7, "release": "force"}, 8, RIGID),
-    ],
+    sample(
+        4,
+        [
+            ({"R": 0.7, "R_left": 0.5}, RIGID, RIGID),
+            ({"R": 0.3, "R_left": 0.9}, RIGID, RIGID),
+            ({"k_stop": 30, "R_left": 0.7}, 0, RIGID),
+            ({"k_stop": 30, "preload": 0.1, "k_stop_left": 20, "preload_left": 0}, RIGID, 0),
+            ({"k_stop": 30, "preload": 0.1, "k_stop_left": 20}, RIGID, RIGID),
+            ({"k_stop": 300, "c_stop": 8, "R_left": 0.7, "release": "force"}, 8, RIGID),
+        ],
+    ),
     ids=str,
 )
-@pytest.mark.parametrize("omega", [0.45, 0.8, 2.5])
+@pytest.mark.parametrize("omega", [0.45, *slow_cases(0.8, 2.5)])
 def test_impacts_and_preload_beside_other_stops(omega, stops, right, left):
     amplitude = 1 / np.hypot(1 - omega**2, 0.1 * omega)
     inside, sign = (0.97, 1) if omega < 1 else (1.03, -1)

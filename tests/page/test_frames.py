@@ -40,14 +40,13 @@ def put_together(scene, found):
     return result, data
 
 
-@pytest.mark.few(1)
 @pytest.mark.parametrize(
     "changes",
     [
         {},
-        {"start": {"random": 3, "seed": 5}},
-        {"start": {"follow": "both"}},
         *slow_cases(
+            {"start": {"random": 3, "seed": 5}},
+            {"start": {"follow": "both"}},
             {"sweep": {"R": np.linspace(0.5, 0.9, 40)}},
             {"start": {"follow": "up"}},
             {"start": {"follow": "down"}},

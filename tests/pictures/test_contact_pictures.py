@@ -3,6 +3,7 @@
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
+from support import sample, slow_cases
 
 import vibro_sweep as vs
 from vibro_sweep.model.stop_force import force_of
@@ -113,11 +114,11 @@ def test_an_orbit_marks_its_contacts():
     assert [sum(line.get_label() == "contact" for line in ax.lines) for ax in fig.axes] == [1, 1]
 
 
-@pytest.mark.few(2)
 @pytest.mark.parametrize(
-    "values, scale", [([1, 2, 5, 10, 20, 50, 100], "log"), ([1, 10, 20, 30, 100], "linear"), ([1, 2, 5, 10], "linear")]
+    "values, scale",
+    sample(2, [([1, 2, 5, 10, 20, 50, 100], "log"), ([1, 10, 20, 30, 100], "linear"), ([1, 2, 5, 10], "linear")]),
 )
-@pytest.mark.parametrize("kind", ["bifurcation", "contacts"])
+@pytest.mark.parametrize("kind", ["bifurcation", *slow_cases("contacts")])
 def test_values_in_proportion_have_a_logarithmic_axis(kind, values, scale):
     """Over two decades and more."""
     swept = vs.sweep(system(), {"k_stop": values}, transient=5, record=5, observe=["section", "contacts"])

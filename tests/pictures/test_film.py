@@ -4,6 +4,7 @@ import matplotlib
 import numpy as np
 import pytest
 from PIL import Image
+from support import sample
 from support.programs import main
 
 import vibro_sweep as vs
@@ -44,8 +45,7 @@ def test_of_two_starts_the_first_is_shown():
     assert first.get_x() + first.get_width() / 2 == pytest.approx(place, abs=1e-12)
 
 
-@pytest.mark.few(1)
-@pytest.mark.parametrize("suffix", [".gif", ".mp4"])
+@pytest.mark.parametrize("suffix", sample(1, [".gif", ".mp4"]))
 def test_files(data, tmp_path, few, suffix):
     """A file that nobody has changed is replaced; the suffix asks for a film."""
     if suffix == ".mp4" and not film.FFMpegWriter.isAvailable():

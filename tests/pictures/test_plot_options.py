@@ -5,7 +5,7 @@ from pathlib import Path
 import matplotlib.image
 import numpy as np
 import pytest
-from support import slow_cases
+from support import sample, slow_cases
 from support.programs import main
 from support.scene_texts import parsed
 
@@ -188,8 +188,7 @@ def test_a_single_point_has_no_sweep_to_choose_from(files):
         plotting.figure(files / "one.h5", options=PlotOptions(at={"b": 6.6}))
 
 
-@pytest.mark.few(1)
-@pytest.mark.parametrize("kind", ["history", "configuration", "iteration"])
+@pytest.mark.parametrize("kind", sample(1, ["history", "configuration", "iteration"]))
 def test_the_scene_names_its_picture(tmp_path, kind):
     """As those of the paper's figures 3 and 4 do, whose data are those of figure 2."""
     text = f"{SYSTEM}\ntrajectory: {{periods: 2, samples: 20}}\npicture: {kind}"

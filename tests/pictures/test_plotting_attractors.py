@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
 from matplotlib.text import Text
-from support import slow_cases
+from support import sample, slow_cases
 from support.scene_texts import parsed
 
 import vibro_sweep as vs
@@ -194,13 +194,12 @@ def test_words():
     assert kind(6, average) == "even" and describe(6, average) == "period 6, 2 impacts right, 2 left"
 
 
-@pytest.mark.few(1)
 @pytest.mark.parametrize(
     "text",
     [
         "sweep: {b: {values: [5, 6]}}\nobserve: [section, lyapunov, impacts]",
-        "sweep: {x1: {values: [0, 1]}, v1: {values: [0, 1]}}\nobserve: [attractors]",
         *slow_cases(
+            "sweep: {x1: {values: [0, 1]}, v1: {values: [0, 1]}}\nobserve: [attractors]",
             "sweep: {b: {values: [5, 6]}}\nstart: {random: 2}\nobserve: [attractors]",
             "sweep: {b: {values: [5, 6]}, R: {values: [0.5, 0.6]}}\nobserve: [section, lyapunov, impacts]",
         ),
@@ -217,11 +216,10 @@ def test_empty_axes_say_why(tmp_path, text):
         assert all(any("all points failed" in text.get_text() for text in ax.texts) for ax in panels), one
 
 
-@pytest.mark.few(1)
-@pytest.mark.parametrize("law, words", [
+@pytest.mark.parametrize("law, words", sample(1, [
     ("k_stop: 10", {"period 1, 1 contact right, 1 left", "without contact, period 1"}),
     ("k_stop: 10, R_left: 0.7", {"period 1, 1 impact right, 1 left", "non-impacting, period 1"}),
-])  # fmt: skip
+]))  # fmt: skip
 def test_what_meets_a_compliant_stop_is_called_a_contact(tmp_path, law, words):
     """Beside a rigid one both are called impacts, as they are counted together."""
     system = f"system: {{type: one_mass, zeta: 0.02, F: 0.8, omega: 1.6, b: 1, tau: 0, {law}}}"

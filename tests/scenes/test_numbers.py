@@ -4,7 +4,7 @@ import h5py
 import numpy as np
 import pytest
 import xarray
-from support import ROOT, slow_cases
+from support import ROOT, sample, slow_cases
 from support.scene_texts import parsed
 
 import vibro_sweep as vs
@@ -35,9 +35,8 @@ def run(folder, text, system=PAPER, orbit=ORBIT):
     return scene, path
 
 
-@pytest.mark.few(3)
 @pytest.mark.parametrize("tau", ["grazing", *slow_cases("1.25")])
-@pytest.mark.parametrize("kind", SWEEPS)
+@pytest.mark.parametrize("kind", sample(3, SWEEPS))
 def test_every_number_of_every_point_is_in_the_file(tmp_path, kind, tau):
     """As an attribute or a coordinate, what the block of the point was computed with; b* is that of `vs.grazing`."""
     scene, path = run(tmp_path, SWEEPS[kind], f"{PAPER}, tau: {tau}" if kind != "tau" else PAPER)

@@ -8,9 +8,24 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]  # the checkout; the package that is tested may be installed elsewhere
 
 
-def slow_cases(*cases):
-    """Cases of a parametrised test that are run with `-m slow` only. A tuple has the values of several arguments."""
-    return [pytest.param(*(case if isinstance(case, tuple) else (case,)), marks=pytest.mark.slow) for case in cases]
+def sample(n: int, cases) -> list:
+    """Cases of a parametrised test of which n, spread over all, are fast, and the others run with `-m slow` only.
+
+    A tuple has the values of several arguments.
+    """
+    cases = [case if isinstance(case, tuple) else (case,) for case in cases]
+    fast = spread(n, len(cases))
+    return [pytest.param(*case, marks=[] if k in fast else pytest.mark.slow) for k, case in enumerate(cases)]
+
+
+def slow_cases(*cases) -> list:
+    """Cases of a parametrised test that are all slow."""
+    return sample(0, cases)
+
+
+def spread(n: int, count: int) -> set[int]:
+    """n places of `count`, at equal distances, the first among them."""
+    return {k * count // n for k in range(n)}
 
 
 def path_with(folder: Path) -> str:

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 import yaml
 
-from . import ROOT
+from . import ROOT, spread
 
 FOLDER = ROOT / "tests" / "cases"
 
@@ -17,7 +17,7 @@ def rows(name: str, sample: int | None = None, folder: Path = FOLDER) -> list:
     Of a long table `sample` rows, spread over all of it, are fast, and the others slow.
     """
     table = read((folder / f"{name}.yaml").read_text())
-    fast = set(range(len(table))) if sample is None else {k * len(table) // sample for k in range(sample)}
+    fast = spread(len(table) if sample is None else sample, len(table))
     return [
         pytest.param(row, id=row["id"], marks=[pytest.mark.slow] if row.get("slow") or k not in fast else [])
         for k, row in enumerate(table)

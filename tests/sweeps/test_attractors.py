@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from support import sample
 from support.attractors import same_partition
 from support.scenes import OSCILLATOR, run, scene_of
 
@@ -147,8 +148,7 @@ def test_basins_against_simulate(basins):
     assert len(kept) == label.max() == 3 and same_partition(slow, label)
 
 
-@pytest.mark.few(2)
-@pytest.mark.parametrize("key", ["x1", "v1", "x2", "v2"])
+@pytest.mark.parametrize("key", sample(2, ["x1", "v1", "x2", "v2"]))
 def test_every_swept_state(tmp_path, key):
     """Alone, and with a number of the system."""
     text = f"sweep: {{{key}: {{values: [-0.4, 0.3]}}, R: {{values: [0.7, 0.8]}}}}\norbit: {{transient: 0, record: 3}}"
@@ -198,8 +198,7 @@ def test_no_stop_no_bound():
     assert scene_of(f"dynamics: map\n{text}".replace("6.7", "7"), f"{OSCILLATOR}, b: 6.7").shape == (2,)
 
 
-@pytest.mark.few(1)
-@pytest.mark.parametrize("stops", ["left", "right", "both"])
+@pytest.mark.parametrize("stops", sample(1, ["left", "right", "both"]))
 def test_random_starts_of_any_oscillator_are_between_its_stops(stops):
     """With one stop, masses that lie around the stops' middle may all have a gap beyond it: it is moved inside."""
     moved = 0

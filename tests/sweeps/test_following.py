@@ -129,8 +129,7 @@ def arrays_of(points, random):
     return found, places
 
 
-@pytest.mark.few(2)
-@pytest.mark.parametrize("part", [1, 7, 1000])
+@pytest.mark.parametrize("part", [1, *slow_cases(7, 1000)])
 @pytest.mark.parametrize("seed", [0, 1, *slow_cases(*range(2, 6))])
 def test_numbers_are_those_of_the_slow_version(seed, part):
     """However the points are handed over."""

@@ -6,7 +6,7 @@ import tracemalloc
 
 import numpy as np
 import pytest
-from support import slow_cases
+from support import sample
 from support.scene_texts import parsed
 from support.scenes import EVERY, PAPER, SCENES, arrays_of, assert_same_bits, computed, scene_of
 
@@ -77,10 +77,9 @@ MORE = {"failing": (FAILING,), "hasty": (HASTY,)}
 AGAIN = "compliant, follow", "compliant, force"
 
 
-@pytest.mark.few(2)
 @pytest.mark.parametrize(
     "name",
-    [*(name for name in SCENES if name != "attractors"), *MORE, "compliant", *slow_cases(*AGAIN)],
+    sample(2, [*(name for name in SCENES if name != "attractors"), *MORE, "compliant", *AGAIN]),
 )
 def test_parts_of_points_and_chains_give_the_same_bits(name, monkeypatch):
     def too_stiff(*given):

@@ -13,6 +13,7 @@ from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPool
 from itertools import islice
 
 import pytest
+from support import sample
 from support.scenes import PAPER, SCENES, arrays_of, assert_same_bits, scene_of
 
 import vibro_sweep as vs
@@ -115,18 +116,24 @@ def test_lost_blocks_are_sent_again(tmp_path, whole):
     assert_same_bits(arrays_of(tmp_path / "out.h5"), whole)
 
 
-@pytest.mark.few(1)
 @pytest.mark.parametrize(
     "error, attempts, words",
-    [
-        (
-            ConnectionError("the worker is gone"),
-            3,
-            "3 attempts at b = .*, R = 0.7.* were lost .*worker is gone",
-        ),
-        (ModuleNotFoundError("No module named 'vibro_sweep'"), 1, "a worker cannot load vibro_sweep .*No module"),
-        (BlockError("worker host, failed at b = 6.5: MemoryError"), 1, "worker host, failed at b = 6.5: MemoryError"),
-    ],
+    sample(
+        1,
+        [
+            (
+                ConnectionError("the worker is gone"),
+                3,
+                "3 attempts at b = .*, R = 0.7.* were lost .*worker is gone",
+            ),
+            (ModuleNotFoundError("No module named 'vibro_sweep'"), 1, "a worker cannot load vibro_sweep .*No module"),
+            (
+                BlockError("worker host, failed at b = 6.5: MemoryError"),
+                1,
+                "worker host, failed at b = 6.5: MemoryError",
+            ),
+        ],
+    ),
 )
 def test_what_ends_a_run_loses_nothing(tmp_path, whole, error, attempts, words):
     scene, output, sent = scene_of(FOLLOW), tmp_path / "out.h5", []

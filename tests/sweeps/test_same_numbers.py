@@ -10,7 +10,7 @@ from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 
 import numpy as np
 import pytest
-from support import slow_cases
+from support import sample, slow_cases
 from support.scene_texts import parsed
 from support.scenes import ALL, EVERY, PAPER, arrays_of, assert_same_bits, done, run, scene_of
 
@@ -18,18 +18,14 @@ import vibro_sweep as vs
 from vibro_sweep.driver import blocks, compute
 from vibro_sweep.driver.drawn_starts import starts_of
 
-SMALL = ("random", "follow", "attractors", "basins", "compliant")
+SMALL = ("random", "attractors")
 
 
-@pytest.mark.few(1)
 @pytest.mark.parametrize(
     "name",
     [
         "random",
-        "follow",
-        "attractors",
-        "compliant",
-        *slow_cases("plane", "basins", "compliant, follow", "compliant, force"),
+        *slow_cases("follow", "attractors", "compliant", "plane", "basins", "compliant, follow", "compliant, force"),
     ],
 )
 def test_workers_do_not_matter(tmp_path, name):
@@ -59,8 +55,7 @@ observe: [section, lyapunov, impacts]
             assert together[key][box].tobytes() == values.tobytes(), (box, key)
 
 
-@pytest.mark.few(1)
-@pytest.mark.parametrize("name", ["random", "compliant"])
+@pytest.mark.parametrize("name", sample(1, ["random", "compliant"]))
 def test_a_trajectory_leaves_all_else_as_it_is(tmp_path, name):
     text, *system = EVERY[name]
     asked = "trajectory: {periods: 2, samples: 50}\n"
@@ -70,7 +65,6 @@ def test_a_trajectory_leaves_all_else_as_it_is(tmp_path, name):
     assert_same_bits({key: found[key] for key in alone}, alone)
 
 
-@pytest.mark.few(2)
 @pytest.mark.parametrize("name", [*SMALL, *slow_cases(*[name for name in EVERY if name not in SMALL])])
 def test_block_size_does_not_matter(tmp_path, name):
     scene, whole = scene_of(*EVERY[name]), run(tmp_path, *EVERY[name])

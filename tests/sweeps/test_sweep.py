@@ -5,7 +5,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
-from support import ROOT
+from support import ROOT, sample
 from support.files import described
 from support.scenes import ALL, PAPER, SCENES, arrays_of, assert_same_bits, run, scene_of
 
@@ -93,8 +93,7 @@ def test_follow_starts_where_the_last_point_ended(tmp_path):
             X = section[-1]
 
 
-@pytest.mark.few(1)
-@pytest.mark.parametrize("direction", ["up", "down", "both"])
+@pytest.mark.parametrize("direction", sample(1, ["up", "down", "both"]))
 def test_up_is_up_on_a_falling_axis(tmp_path, direction):
     rising = SCENES["follow"].replace("both", direction)
     falling = rising.replace("start: 6.5, stop: 6.8, num: 9", "start: 6.8, stop: 6.5, num: 9")

@@ -83,8 +83,7 @@ def file_size_limit(size):
         resource.setrlimit(resource.RLIMIT_FSIZE, before)
 
 
-@pytest.mark.few(1)
-@pytest.mark.parametrize("size", [1_000, 800_000, *slow_cases(30_000, 300_000)])
+@pytest.mark.parametrize("size", [1_000, *slow_cases(30_000, 300_000, 800_000)])
 def test_a_disk_that_takes_no_more(scene, path, whole, size):
     """At every stage: while the part is made, and in its blocks."""
     with file_size_limit(size):
