@@ -73,5 +73,5 @@ if __name__ == "__main__":
     order, out = map(Path, sys.argv[1:])
     chosen, minutes = json.loads(order.read_text())
     files = sorted({name.partition("::")[0] for name in chosen or ["tests"]})
-    common = ["-q", "-n", "0", "-m", "not soak", "-p", "no:cacheprovider", *["-x"] * (chosen is not None)]
+    common = ["-q", "-n", "0", "-m", "", "-p", "no:cacheprovider", *["-x"] * (chosen is not None)]
     sys.exit(pytest.main([*common, *files], [Tests(chosen, minutes, out)]))

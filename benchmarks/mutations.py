@@ -2,7 +2,7 @@
 
 python benchmarks/mutations.py --work FOLDER [--lines 60] [--seed 28] [--only 3 17] [--log FILE]
 
-FOLDER gets a copy of the checkout, its compiled kernels, and what each test calls: all tests but the soak ones are run
+FOLDER gets a copy of the checkout, its compiled kernels, and what each test calls: all tests are run
 once for that. Then tests run in order of nearness to the changed line, until one fails; one that does not end fails,
 too (`chosen_tests.py`). Lines that no kernel contains come first.
 """

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
+from support import slow_cases
 
 import vibro_sweep as vs
 from vibro_sweep.engine.motion.impacts import MOST_EVENTS
@@ -67,9 +68,7 @@ def searching(count):
     )
 
 
-@pytest.mark.parametrize(
-    "count", [25, pytest.param(150, marks=pytest.mark.slow), pytest.param(400, marks=pytest.mark.soak)]
-)
+@pytest.mark.parametrize("count", [25, *slow_cases(150)])
 def test_anything(count):
     """Of 400 examples 93 % were well, 58 % with impacts and 30 % with rests; 5 % are too stiff."""
     outcomes = Counter()
@@ -120,7 +119,7 @@ def test_anything(count):
     require(outcomes, ok=0.75, struck=0.35, rested=0.1)
 
 
-@pytest.mark.parametrize("count", [25, pytest.param(100, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("count", [25, *slow_cases(100)])
 def test_any_exponents(count):
     """Of 100 examples 95 % had them."""
     outcomes = Counter()

@@ -1,34 +1,16 @@
-"""Exponents with compliant stops: of periodic orbits against eighty digits, and their sum against its exact value.
-
-`python tests/accuracy/test_compliant_exponents.py FIRST LAST` compares the oscillators FIRST ... LAST - 1, and
-`relaxing FIRST LAST` such that are touched while they relax; `sums FIRST LAST` computes such planes, a line for each;
-tests/data/compliant_exponents.log is what they printed.
-"""
-
-import sys
+"""Exponents with compliant stops: of periodic orbits against eighty digits, and their sum against its exact value."""
 
 import numpy as np
 import pytest
 from support import compliant_exponents, compliant_sums, slow_cases
-from support.compliant_sums import MOST
+from support.searching import searched
 
 import vibro_sweep as vs
 
-ORBITS, RELAXING, PLANES = 200, 300, 200
-WITHIN = 5  # times the stated error
-LESS = 10  # times: the share of contact, a sum of many, is known to less
-
-
-def hold(reports):
-    for one in reports:
-        assert np.all(one.errors <= WITHIN * one.stated), one
-        assert np.all(one.multiplier_errors <= WITHIN * one.multipliers_stated), one
-
 
 def test_exponents_of_an_orbit_against_eighty_digits():
-    report = compliant_exponents.compared(0)
-    assert report.period
-    hold([report])
+    counted, wrong = compliant_exponents.study(0)
+    assert wrong == [] and counted["orbits"] == 1
 
 
 @pytest.mark.parametrize("masses, z, k, part", [
@@ -45,7 +27,7 @@ def test_exponents_where_a_contact_shrinks_what_another_stop_keeps(masses, z, k,
     two = vs.System(mu_m=3, mu_k=2, f2=0.4, **law)
     system = vs.Oscillator.named("one_mass", k=1, F=1, tau=0.3, **law) if masses == 1 else two
     report = compliant_exponents.compared_at([part * vs.grazing(system).b_right], system)
-    hold([report])
+    assert compliant_exponents.reported(report).wrong == []
     assert report.period and report.relaxing
     assert report.stated.max() < 1e-11
 
@@ -54,65 +36,32 @@ def test_exponents_where_a_contact_shrinks_what_another_stop_keeps(masses, z, k,
 @pytest.mark.parametrize("seed", [105, 19, 127])
 def test_exponents_where_vectors_find_no_directions(seed):
     """Of five multipliers three have nearly one modulus, or the orbit has only just found its period."""
-    report = compliant_exponents.compared_relaxing(seed)
-    hold([report])
-    assert report.period and report.stated.max() < 1e-9
+    counted, wrong = compliant_exponents.study_of_relaxing(seed)
+    assert wrong == [] and counted["precise"] == 1
 
 
 @pytest.mark.slow
-def test_exponents_of_twenty_orbits(capsys):
-    reports = [compliant_exponents.compared(seed) for seed in range(22)]
-    with capsys.disabled():
-        print("\n" + "\n".join(compliant_exponents.table(reports)))
-    hold(reports)
-    assert sum(one.period > 0 and one.stated.max() < 1e-9 for one in reports) >= 18
+def test_exponents_of_twenty_orbits():
+    counted, wrong = searched(compliant_exponents.study, range(22))
+    assert wrong == [] and counted["precise"] >= 18
 
 
-@pytest.mark.soak
-def test_exponents_of_two_hundred_oscillators(capsys):
-    reports = [compliant_exponents.compared(seed) for seed in range(ORBITS)]
-    with capsys.disabled():
-        print("\n" + "\n".join(compliant_exponents.table(reports)))
-    hold(reports)
+@pytest.mark.slow
+def test_exponents_with_stops_that_are_touched_while_they_relax():
+    counted, wrong = searched(compliant_exponents.study_of_relaxing, range(20))
+    assert wrong == [] and counted["relaxing"] >= 10
 
 
-@pytest.mark.parametrize("count", [*slow_cases(20), pytest.param(RELAXING, marks=pytest.mark.soak)])
-def test_exponents_with_stops_that_are_touched_while_they_relax(count):
-    reports = [compliant_exponents.compared_relaxing(seed) for seed in range(count)]
-    hold([one for one in reports if one.period])
-    assert sum(one.period > 0 and one.relaxing > 0 for one in reports) >= count // 2
-
-
-@pytest.mark.parametrize("seeds", [(1,), *slow_cases([0, *range(2, 16)])])
+@pytest.mark.parametrize("seeds", [[1], *slow_cases([0, *range(2, 16)])], ids=len)
 def test_sums_of_exponents(seeds):
-    """As they are stored, and as the share of contact and the impacts of the file give them."""
-    for report in map(compliant_sums.summed, seeds):
-        assert report.worst < MOST and report.apart < LESS * MOST, report
+    counted, wrong = searched(compliant_sums.study, seeds)
+    assert wrong == [] and counted["counted"] > 10 * len(seeds)
 
 
-@pytest.mark.parametrize("count", [*slow_cases(1, 20), pytest.param(RELAXING, marks=pytest.mark.soak)])
+@pytest.mark.parametrize("count", slow_cases(1, 20))
 def test_sums_with_stops_that_are_touched_while_they_relax(count):
-    """Motion has one multiplier more than states there; where it is one of a pair with the last one both count."""
-    reports = [compliant_sums.summed_relaxing(seed) for seed in range(count)]
-    assert max(worst for _, worst in reports) < 1, reports
-    assert sum(counted for counted, _ in reports) > 40 * count
-
-
-@pytest.mark.soak
-def test_sums_of_two_hundred_planes():
-    reports = [compliant_sums.summed(seed) for seed in range(PLANES)]
-    assert max(one.worst for one in reports) < MOST and max(one.apart for one in reports) < LESS * MOST
-
-
-if __name__ == "__main__":
-    sums, (first, last) = sys.argv[1] == "sums", map(int, sys.argv[-2:])
-    compared = {"sums": compliant_sums.summed, "relaxing": compliant_exponents.compared_relaxing}
-    function = compared.get(sys.argv[1], compliant_exponents.compared)
-    reports = []
-    for seed in range(first, last):
-        reports.append(function(seed))
-        print(reports[-1], flush=True)
-    print("\n".join((compliant_sums if sums else compliant_exponents).table(reports)))
+    counted, wrong = searched(compliant_sums.study_of_relaxing, range(count))
+    assert wrong == [] and counted["points"] > 40 * count
 
 
 @pytest.mark.parametrize("release", ["displacement", "force"])

@@ -1,52 +1,26 @@
 """Flights past a compliant stop at 10^-1 .. 10^-14 of the clearance, of one mass to 10^-15: no contact missed, none
-invented.
+invented (tests/support/compliant_grazes.py)."""
 
-`pytest -m soak` has 10^5 flights for each number of masses; tests/data/compliant_grazes.log has these of one mass,
-and 10^4 of two and of three.
-"""
+from functools import partial
 
 import pytest
 from numpy.random import default_rng
-from support.compliant_grazes import PATHS, judge
-from support.decades import DECADES, show
-
-BATCH = {1: 4000, 2: 400, 3: 400}  # flights drawn for an oscillator: some end behind a stop where they should begin
-
-
-def search(masses, flights, batch):
-    rng, rows, seed = default_rng(masses), 0, 0
-    while seed == 0 or rows[0, ..., 0].sum() < flights:
-        seed += 1
-        rows = rows + judge(masses, seed, batch, rng)
-    return rows
-
-
-def wrong(rows, masses):
-    """How many were missed or invented; of several masses not at 10^-15, which the terms of the gap round away."""
-    return rows[:, : len(DECADES) - (masses > 1), :, 1:3].sum()
+from support import slow_cases
+from support.compliant_grazes import MASSES, judge, study
+from support.searching import searched
 
 
 @pytest.mark.parametrize(
-    ("masses", "flights", "batch"),
-    [
-        (1, 500, 400),
-        *(pytest.param(n, m, BATCH[n], marks=pytest.mark.slow) for n, m in ((1, 10_000), (2, 2000), (3, 2000))),
-    ],
+    ("masses", "batch", "count"), [(1, 400, 3), *slow_cases((1, 4000, 6), (2, 400, 11), (3, 400, 11))]
 )
-def test_none_missed_and_none_invented(masses, flights, batch):
-    rows = search(masses, flights, batch)
-    assert (rows[..., 3].sum((1, 2)) > flights / 2).all() and (rows[0, ..., 0] > 0).all()
-    assert wrong(rows, masses) == 0
-
-
-@pytest.mark.soak
-@pytest.mark.parametrize("masses", [1, 2, 3])
-def test_a_hundred_thousand_flights(masses, capsys):
-    rows = search(masses, 100_000, BATCH[masses])
-    with capsys.disabled():
-        for path, found in zip(PATHS, rows, strict=True):
-            show(f"{masses} masses, {path}: {found[..., 0].sum()} flights, {found[..., 3].sum()} contacts", found)
-    assert wrong(rows, masses) == 0
+def test_none_missed_and_none_invented(masses, batch, count):
+    """Of so many batches."""
+    seeds = range(MASSES.index(masses), count * len(MASSES), len(MASSES))
+    counted, wrong = searched(partial(study, batch=batch), seeds)
+    assert wrong == [] and counted["decades without flights"] == 0
+    for path in ("alone", "side by side"):
+        assert counted[f"flights {path}"] > 0.4 * batch * count
+        assert counted[f"contacts {path}"] > counted[f"flights {path}"] / 2
 
 
 @pytest.mark.slow

@@ -150,14 +150,12 @@ observe: [section, impacts]
 """
 
 
-@pytest.mark.parametrize(
-    "periods", [pytest.param(1_000_000, marks=pytest.mark.slow), pytest.param(10_000_000, marks=pytest.mark.soak)]
-)
+@pytest.mark.slow
 @pytest.mark.parametrize("R, b", [(0.8, 6.8), (0.8, 5.0), (0.8, 6.6), (0.3, 0.5)])
-def test_millions_of_periods(R, b, periods, tmp_path):
+def test_a_million_periods(R, b, tmp_path):
     """The phase does not drift: the section points of a stable orbit are the same after 10^4 and many more periods."""
     points = []
-    for transient in (10_000, periods):
+    for transient in (10_000, 1_000_000):
         scene = tmp_path / f"long{transient}.yaml"
         scene.write_text(SCENE.format(R=R, b=b, transient=transient))
         vs.run(vs.load_scene(scene), tmp_path / f"long{transient}.h5")

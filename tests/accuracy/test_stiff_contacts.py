@@ -1,41 +1,14 @@
-"""Contacts between stiffly and softly held masses, and far stops: as exact as rounding the data allows.
-
-`python tests/accuracy/test_stiff_contacts.py FIRST LAST` compares the oscillators FIRST ... LAST - 1, a line for each.
-"""
-
-import sys
-from collections import Counter
+"""Contacts between stiffly and softly held masses, and far stops: as exact as rounding the data allows."""
 
 import numpy as np
 import pytest
 from support import slow_cases
 from support.drawn_stiff import drawn, positive
-from support.stiff_contacts import Flight, compared, errors_of_first, first_zero, judged, time_in_units
+from support.searching import searched
+from support.stiff_contacts import Flight, errors_of_first, first_zero, judged, study, time_in_units
 
 import vibro_sweep as vs
 from vibro_sweep.engine.free_flight import FreeFlight
-
-COUNT = 500
-LEAST = 10.0  # errors allowed, in units of what rounding the data does
-
-
-def line(report):
-    begin = (
-        f"{report['seed']:5d} {report['masses']} {report['ratio']:8.1e} {report['offset/b']:8.1f} {report['damper']:8s}"
-    )
-    if "refused" in report:
-        return f"{begin} refused: {report['refused']}"
-    errors = " ".join(f"{error:8.2f}" for error in report["errors"].values())
-    return f"{begin} {report.get('compared', 0):2d} {errors} {report.get('defect', '')}".rstrip()
-
-
-def hold(reports):
-    assert not [line(one) for one in reports if "defect" in one]
-    assert not [line(one) for one in reports if max(one["errors"].values(), default=0.0) > LEAST]
-    refused = sum("refused" in one for one in reports)
-    assert refused <= len(reports) / 10 and sum(one.get("compared", 0) for one in reports) > 3 * (
-        len(reports) - refused
-    )
 
 
 @pytest.mark.parametrize(
@@ -172,39 +145,10 @@ def test_the_comparison_counts_a_graze_only_where_the_data_decide_it(share, coun
     assert "defect" not in judged(passed, [0] * 4, without_graze, 1)
 
 
-@pytest.mark.slow
-def test_a_few_oscillators():
-    """Among them those whose stiff masses carry most of the force, and those with far stops; all of three masses with a
-    constant force, and so with the same kernels."""
-    hold([compared(seed) for seed in (0, 15, 47)])
-
-
-@pytest.mark.slow
-def test_thirty_oscillators():
-    hold([compared(seed) for seed in (*range(30), 54, 99)])
-
-
-@pytest.mark.soak
-def test_five_hundred_oscillators(capsys):
-    reports = [compared(seed) for seed in range(COUNT)]
-    with capsys.disabled():
-        print("\n" + "\n".join(table(reports)))
-    hold(reports)
-
-
-def table(reports):
-    counts = Counter(one.get("refused", "compared") for one in reports)
-    yield f"{len(reports)} drawn: " + ", ".join(f"{name} {count}" for name, count in counts.items())
-    for name in ("t", "v", "x", "xdot"):
-        found = [one["errors"][name] for one in reports if one["errors"]]
-        half, most, all_of_them = np.quantile(found, [0.5, 0.9, 1.0])
-        yield f"  {name:4s} 50 % {half:.2f}, 90 % {most:.2f}, largest {all_of_them:.2f}"
-
-
-if __name__ == "__main__":
-    print(" seed N    ratio offset/b damper    n        t        v        x     xdot: in units of what rounding does")
-    reports = []
-    for seed in range(*map(int, sys.argv[1:])):
-        reports.append(compared(seed))
-        print(line(reports[-1]), flush=True)
-    print("\n".join(table(reports)))
+# The first have stiff masses that carry most of the force, and far stops; all have three masses with a constant force,
+# and so the same kernels.
+@pytest.mark.parametrize("seeds", slow_cases([0, 15, 47], [*range(30), 54, 99]), ids=len)
+def test_random_oscillators(seeds):
+    counted, wrong = searched(study, seeds)
+    assert wrong == []
+    assert counted["refused"] <= len(seeds) / 10 and counted["impacts"] > 3 * (len(seeds) - counted["refused"])

@@ -12,7 +12,7 @@ from numpy.random import default_rng
 from reference import certified
 from reference.certified import POSITIVE, REAL
 from support import sample, slow_cases
-from support.decades import DECADES, EPS, show
+from support.decades import DECADES, EPS
 
 from vibro_sweep.engine.motion import first_contact
 from vibro_sweep.engine.motion.strike import TAIL, strike, strikes_of
@@ -174,13 +174,8 @@ def test_polynomials(kind, search):
     assert rows[..., 4].sum() <= (0.003 * rows[..., 0].sum() if kind == "double" else 0), "unresolved"
 
 
-@pytest.mark.parametrize(
-    "count", [pytest.param(1000, marks=pytest.mark.slow), pytest.param(5000, marks=pytest.mark.soak)]
-)
-def test_many_polynomials(count, capsys):
+@pytest.mark.slow
+def test_many_polynomials():
     rng = default_rng(2024)
-    with capsys.disabled():
-        for kind, search in itertools.product(KINDS, SEARCHES):
-            rows = polynomial_table(search, kind, count, rng)
-            show(f"polynomials: {kind}, {search.__name__}; unresolved: {rows[..., 4].sum()}", rows)
-            assert rows[..., 1:3].sum() == 0
+    for kind, search in itertools.product(KINDS, SEARCHES):
+        assert polynomial_table(search, kind, 1000, rng)[..., 1:3].sum() == 0

@@ -10,7 +10,7 @@ import pytest
 from numpy.random import default_rng
 from reference import certified
 from reference.certified import NEGATIVE, POSITIVE, REAL
-from support.decades import DECADES, EPS, show
+from support.decades import DECADES, EPS
 
 import vibro_sweep as vs
 from vibro_sweep.engine import one_system
@@ -171,13 +171,9 @@ def test_single_precision():
     assert 0.1 < worst < 1.0
 
 
-@pytest.mark.parametrize(
-    "systems", [pytest.param(4, marks=pytest.mark.slow), pytest.param(60, marks=pytest.mark.soak)]
-)  # a million flights
-def test_many_flights(systems, capsys):
+@pytest.mark.slow
+def test_many_flights():
+    """Of four oscillators."""
     rng = default_rng(2025)
-    rows = sum(judge_flights(16000, rng) for _ in range(systems))
-    with capsys.disabled():
-        show("flights of oscillators", rows)
-        print(f"excluded by the scan in spite of a contact: {rows[..., 4].sum()} of {rows[..., 0].sum()}")
-    assert rows[..., (1, 2, 4)].sum() == 0
+    rows = sum(judge_flights(16000, rng) for _ in range(4))
+    assert rows[..., 3].sum() > 1000 and rows[..., (1, 2, 4)].sum() == 0

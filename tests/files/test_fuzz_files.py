@@ -1,36 +1,12 @@
-"""The fuzz of files and parts: a few cases always, a sample with `-m slow`, all of them with `-m soak`."""
-
-import collections
-import os
+"""Files and parts damaged or made up in every way: tests/support/fuzz_files.py."""
 
 import pytest
-from support.fuzz_files import COMMANDS, OUTCOMES, fuzz
-
-NAMES = "whole.h5", "half.h5.part"
-
-
-@pytest.mark.parametrize(
-    ("name", "few"),
-    [
-        pytest.param("whole.h5", 1, id="few"),
-        *(pytest.param(name, 8, id=f"sample of {name}", marks=pytest.mark.slow) for name in NAMES),
-        *(pytest.param(name, None, id=f"all of {name}", marks=pytest.mark.soak) for name in NAMES),
-    ],
-)
-def test_damaged_files(files, tmp_path, monkeypatch, capsys, name, few):
-    monkeypatch.chdir(tmp_path)
-    counts, failures = fuzz(files, files / name, few)
-    if few is None:
-        with capsys.disabled():
-            print(f"\n{name}\n{table(counts)}")
-    assert not failures, "\n".join(failures[:20])
-    assert os.listdir() == []
+from support import slow_cases
+from support.fuzz_files import COMMANDS, seeds_of, study
+from support.searching import searched
 
 
-def table(counts: collections.Counter) -> str:
-    rows = ["| | command | " + " | ".join(OUTCOMES) + " |", "| --- | --- |" + " ---: |" * len(OUTCOMES)]
-    for kind in dict.fromkeys(kind for kind, _, _ in counts):
-        for command in COMMANDS:
-            found = [counts[kind, command, outcome] for outcome in OUTCOMES]
-            rows.append(f"| {kind} | {command} | {' | '.join(map(str, found))} |")
-    return "\n".join(rows)
+@pytest.mark.parametrize("name, few", [("whole.h5", 1), *slow_cases(("whole.h5", 8), ("half.h5.part", 8))])
+def test_damaged_files(name, few):
+    counted, wrong = searched(study, seeds_of(name, few))
+    assert wrong == [] and counted.total() == 5 * few * len(COMMANDS)

@@ -25,14 +25,3 @@ def test_killed_at_random_moments(name, by, tmp_path, monkeypatch):
     found = kills.measure(tmp_path, name, by, 2, 7)
     if by != "Dask":  # whose workers send pieces together
         assert any(0 < kill.kept < run.total for run in found for kill in run.kills)
-
-
-@pytest.mark.soak
-@pytest.mark.parametrize("by", kills.BY)
-@pytest.mark.parametrize("name", kills.KILLED)
-def test_killed_many_times(name, by, tmp_path, monkeypatch, capsys):
-    """81 kills in all."""
-    monkeypatch.chdir(tmp_path)
-    found = kills.measure(tmp_path, name, by, 2, 5)
-    with capsys.disabled():
-        print(*("", *(f"{name}, {by}: {run}" for run in found)), sep="\n")

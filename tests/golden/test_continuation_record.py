@@ -10,7 +10,7 @@ from golden import births, branches, checking, curves, onsets, records, searches
 from golden.motions import system_of
 
 FEW = {  # of each kind those that the fast tests compare; the others are slow, and oscillators that need kernels
-    # which no other test compiles are left to the soak tests
+    # which no other test compiles are left to `tools.golden check`
     "branches": ("paper, symmetric, in b", "mirror image 0"),
     "curves": ("paper, symmetric, pitchfork 1",),
     "searches": ("paper, one side",),
@@ -42,12 +42,6 @@ def test_a_few(kind):
 @pytest.mark.slow
 def test_oscillators_of_few_masses(kind):
     assert wrong(kind, chosen(kind, lambda record: system_of(record["system"]).masses <= MOST_MASSES)) == {}
-
-
-@pytest.mark.parametrize("kind", ["branches", "curves"])
-@pytest.mark.soak
-def test_oscillators_of_many_masses(kind):
-    assert wrong(kind, chosen(kind, lambda record: system_of(record["system"]).masses > MOST_MASSES)) == {}
 
 
 def test_a_branch_with_contacts():

@@ -1,11 +1,14 @@
 """A graze is the same from whichever orbit beside it its branch is followed, however near.
 
-With `-m slow` more seeds; the full counts: tests/data/compliant_bifurcations.log, tests/data/random_branches.log.
+The full counts: tests/data/compliant_bifurcations.log, tests/data/random_branches.log.
 """
+
+from functools import partial
 
 import pytest
 from support import slow_cases
 from support.beside_grazes import study
+from support.searching import searched
 
 # Seeds whose graze was once taken for another one, or lost, from a start 1e-6 to 1e-11 beside it.
 THREE_MASSES = slow_cases(("rigid", 74))  # each number of masses compiles kernels of its own
@@ -22,9 +25,5 @@ def test_a_graze_is_the_same_from_every_orbit_beside_it(stops, seed):
 
 @pytest.mark.parametrize("stops", slow_cases("rigid", "compliant"))
 def test_grazes_of_random_branches_from_orbits_beside_them(stops):
-    counted = 0
-    for seed in range(100, 130):
-        found, wrong = study(seed, stops)
-        counted += found["starts"]
-        assert not wrong
-    assert counted >= 100
+    counted, wrong = searched(partial(study, stops=stops), range(100, 130))
+    assert wrong == [] and counted["starts"] >= 100

@@ -3,7 +3,6 @@
 With `-m slow` all of BRANCHES and CURVES. What was found: tests/data/compliant_bifurcations.log.
 """
 
-from collections import Counter
 from dataclasses import replace
 
 import numpy as np
@@ -17,6 +16,7 @@ from support.compliant_bifurcations import (
     one_mass,
     turning_within,
 )
+from support.searching import searched
 
 import vibro_sweep as vs
 from vibro_sweep.analysis.continuation.first_point import first_place
@@ -78,18 +78,14 @@ def test_points_of_codimension_two_in_45_digits(name):
             compare(special)
 
 
-@pytest.mark.parametrize("name, which", [
-    *slow_cases(("pitchforks", [-1])),
-    *(pytest.param(name, None, marks=pytest.mark.soak) for name in ("pitchforks", "pairs over the mass")),
-])  # fmt: skip
-def test_where_the_criticality_changes_in_60_digits(name, which):
-    """A minute each: the cubic coefficient is formed by differences of the map."""
+@pytest.mark.parametrize("name", slow_cases("pitchforks", "pairs over the mass"))
+def test_where_the_criticality_changes_in_60_digits(name):
+    """The last of each, as it takes a minute: the cubic coefficient is formed by differences of the map."""
     branch, of, names, bounds, _ = CURVES[name]
     start = next(one for one in branch_of(branch).special if one.type == of)
     found = [one for one in vs.bifurcation_curve(start, names, bounds).special if one.type.startswith("degenerate")]
     assert len(found) == {"pitchforks": 5}.get(name, 1)
-    for special in found if which is None else [found[k] for k in which]:
-        compare(special)
+    compare(found[-1])
 
 
 @pytest.mark.parametrize("names, bounds", [
@@ -273,31 +269,13 @@ def test_windows_of_one_elastic_stop():
             assert np.abs(last[0] - last[1]).max() < 1e-3
 
 
-@pytest.mark.parametrize(
-    "seeds",
-    [
-        range(1, 2),
-        *slow_cases([*range(4), 45], [*range(1000, 1004), 1034, 1151, 1865]),
-        pytest.param(range(300), marks=pytest.mark.soak),
-        pytest.param(range(1000, 1300), marks=pytest.mark.soak),
-    ],
-)
+@pytest.mark.parametrize("seeds", [[1], *slow_cases([*range(4), 45], [*range(1000, 1004), 1034, 1151, 1865])])
 def test_random_branches_from_several_starts(seeds):
-    assert counted(compliant_branches.study, seeds)["branches"] > 0.6 * len(seeds)
+    counted, wrong = searched(compliant_branches.study, seeds)
+    assert wrong == [] and counted["branches"] > 0.6 * len(seeds)
 
 
-@pytest.mark.parametrize(
-    "seeds", [*slow_cases(range(20), [1003, 1035]), pytest.param(range(120), marks=pytest.mark.soak)]
-)
+@pytest.mark.parametrize("seeds", slow_cases(range(20), [1003, 1035]))
 def test_random_curves_with_steps_of_other_lengths(seeds):
-    assert counted(compliant_curves.study, seeds)["curves"] > 0.4 * len(seeds)
-
-
-def counted(study, seeds) -> Counter:
-    """What these seeds have, none of which may have anything wrong."""
-    total = Counter()
-    for seed in seeds:
-        found, wrong = study(seed)
-        assert not wrong
-        total += found
-    return total
+    counted, wrong = searched(compliant_curves.study, seeds)
+    assert wrong == [] and counted["curves"] > 0.4 * len(seeds)

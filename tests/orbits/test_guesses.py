@@ -29,7 +29,6 @@ ORBITS = {
     [
         ("1 a half", 100),
         *slow_cases(("4", 100), ("10", 1000), ("three masses", 300)),
-        *(pytest.param(name, 1000, marks=pytest.mark.soak) for name in ORBITS),
     ],
 )
 def test_what_is_called_an_orbit_is_what_the_engine_simulates(name, count):

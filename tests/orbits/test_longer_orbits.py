@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from support.curves import chosen, solution_at
 from support.oscillators import PAPER
-from support.random_curves import Report, simulate_beside
+from support.random_curves import simulate_beside
+from support.searching import new_report
 
 import vibro_sweep as vs
 from vibro_sweep.analysis.periodic.periodic_orbit import orbit_of
@@ -118,10 +119,10 @@ def test_grazes_of_the_orbits_that_are_born(kind, one_sided_branch, asymmetric_g
         curve = vs.bifurcation_curve(start, NAMES, bounds, virtual=False)
         (end,) = (end for end in (curve.begins, curve.ends) if end.type == kind)
         assert end.parameters == pytest.approx(special.parameters, abs=1e-11)
-        report = Report(0)
+        report = new_report()
         for k in chosen(curve, 9)[1:-1]:
             t, P = curve.points.impact_t[k].values, solution_at(curve, k).P
             assert np.abs((t + P / 2 - t[:, None] + P / 4) % P - P / 4).min() > 1e-4  # no orbit taken twice
             simulate_beside(report, curve, k, kind)
-        assert report.points >= 6 and report.wrong == []
+        assert report.counted["points"] >= 6 and report.wrong == []
         assert len({(one.type, *one.parameters.values()) for one in curve.special}) == len(curve.special)

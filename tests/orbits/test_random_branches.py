@@ -2,42 +2,33 @@
 followed, each held against monodromy matrices that do not come from the engine."""
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
 from reference.closed_orbit import ClosedOrbit, impacts_of
 from reference.machine import machine_of
-from support import branch_search, conditions
+from support import branch_search, conditions, random_branches, slow_cases
 from support.drawn_branches import MODELS, Case
 from support.oscillators import PAPER
-from support.random_branches import study, summary
 from support.same_branch import differences, follow, listed
+from support.searching import searched
 
 import vibro_sweep as vs
 
 
-def slow(kind, seeds, mark):
-    return pytest.param(kind, seeds, marks=mark)
-
-
 @pytest.mark.parametrize(
-    ("kind", "seeds"),
-    [
-        slow("systems", range(1), pytest.mark.slow),
-        slow("systems", range(6), pytest.mark.slow),
-        slow("oscillators", range(4), pytest.mark.slow),
-        slow("systems", range(200), pytest.mark.soak),
-        slow("oscillators", range(200), pytest.mark.soak),
-    ],
+    "study, seeds",
+    slow_cases(
+        (random_branches.study_of_systems, range(1)),
+        (random_branches.study_of_systems, range(6)),
+        (random_branches.study_of_oscillators, range(4)),
+    ),
 )
-def test_stable_pieces_agree_with_simulation(kind, seeds, capsys):
+def test_stable_pieces_agree_with_simulation(study, seeds):
     """Three branches of each; points and ends are compared to 1e-9, and none may disagree."""
-    reports = [study(seed, kind) for seed in seeds]
-    with capsys.disabled():
-        if len(seeds) > 100:
-            print("\n" + summary(reports))
-    assert sum(report.compared for report in reports) > 15 * len(seeds)
-    assert not [line for report in reports for line in report.wrong]
+    counted, wrong = searched(study, seeds)
+    assert wrong == [] and counted["compared"] > 15 * len(seeds)
 
 
 @pytest.mark.parametrize(
@@ -48,17 +39,12 @@ def test_stable_pieces_agree_with_simulation(kind, seeds, capsys):
             [143], MODELS, 2, marks=pytest.mark.slow, id="from a fold, where Newton's method leads to another branch"
         ),
         pytest.param(range(40), MODELS, 30, marks=pytest.mark.slow, id="forty"),
-        pytest.param(range(40, 600), MODELS, 1000, marks=pytest.mark.soak, id="all"),
     ],
 )
-def test_the_same_points_from_all_starts_and_steps(seeds, models, least, capsys):
+def test_the_same_points_from_all_starts_and_steps(seeds, models, least):
     """Lists of special points, the condition of each, and all changes of stability between points."""
-    reports = [branch_search.study(seed, models) for seed in seeds]
-    with capsys.disabled():
-        if len(reports) > 100:
-            print("\n" + branch_search.summary(reports))
-    assert sum(report.counted["branches"] for report in reports) >= least
-    assert not [line for report in reports for line in report.wrong]
+    counted, wrong = searched(partial(branch_search.study, models=models), seeds)
+    assert wrong == [] and counted["branches"] >= least
 
 
 @pytest.fixture(scope="module")

@@ -1,24 +1,18 @@
-"""Bifurcation curves of random systems (tests/support/random_curves.py)."""
+"""Bifurcation curves of random systems: tests/support/random_curves.py."""
 
 import numpy as np
 import pytest
 from support.random_branches import attractors, random_system
-from support.random_curves import compare, key, special_at
+from support.random_curves import key, special_at, study
+from support.searching import searched
 
 import vibro_sweep as vs
 
-SAMPLE = (0, 8)
 
-
-@pytest.mark.parametrize(
-    ("first", "last"),
-    [pytest.param(*SAMPLE, marks=pytest.mark.slow), pytest.param(0, 100, marks=pytest.mark.soak)],
-)
-def test_curves_of_random_systems(first, last):
-    reports = [compare(seed) for seed in range(first, last)]
-    assert [line for report in reports for line in report.wrong] == []
-    curves, points = (sum(getattr(report, name) for report in reports) for name in ("curves", "points"))
-    assert curves >= (last - first) / 2 and points >= 2 * curves, (curves, points)  # so many were met and compared
+@pytest.mark.slow
+def test_curves_of_random_systems():
+    counted, wrong = searched(study, range(8))
+    assert wrong == [] and counted["curves"] >= 4 and counted["points"] >= 2 * counted["curves"]
 
 
 @pytest.mark.slow

@@ -1,21 +1,13 @@
-"""Orbits beyond special points of random oscillators, and branches from there (tests/support/random_switching.py)."""
+"""Orbits beyond special points of random oscillators, and branches from there: tests/support/random_switching.py."""
 
 import pytest
-from support.random_switching import DRAWN, study, summary
+from support import slow_cases
+from support.random_switching import DRAWN, study
+from support.searching import searched
 
 
-@pytest.mark.parametrize(
-    "seeds",
-    [
-        pytest.param(range(3), marks=pytest.mark.slow),
-        pytest.param(range(100), marks=pytest.mark.soak),
-    ],
-)
-@pytest.mark.parametrize("kind", DRAWN)
-def test_orbits_that_switch_gives(kind, seeds, capsys):
-    reports = [study(seed, kind) for seed in seeds]
-    with capsys.disabled():
-        if len(seeds) > 10:
-            print("\n" + summary(reports, kind))
-    assert [line for report in reports for line in report.wrong] == []
-    assert len(seeds) <= 10 or 2 * sum(report.orbits for report in reports) > len(seeds)
+@pytest.mark.parametrize("kind", slow_cases(*range(len(DRAWN))), ids=list(DRAWN))
+def test_orbits_that_switch_gives(kind):
+    """Three oscillators of each kind; of some no attractor is met."""
+    counted, wrong = searched(study, range(kind, 3 * len(DRAWN), len(DRAWN)))
+    assert wrong == [] and counted["drawn"] == 3

@@ -3,8 +3,8 @@ monodromy matrices that do not come from the engine."""
 
 import numpy as np
 import pytest
-from support import window_search
-from support.branch_search import Report, summary
+from support import slow_cases, window_search
+from support.searching import new_report, searched
 from support.windows import SYSTEM, few  # noqa: F401
 
 import vibro_sweep as vs
@@ -23,35 +23,13 @@ DAMPER = dict(mass_ratio=0.2747929395913874, zeta=0.11595848024966961, F=0.98950
 
 
 @pytest.mark.parametrize(
-    "seeds",
-    [
-        pytest.param(range(3), marks=pytest.mark.slow, id="three"),
-        pytest.param(range(3, 103), marks=pytest.mark.soak, id="all"),
-    ],
+    "study, seeds",
+    slow_cases((window_search.study, range(3)), (window_search.study_of_compliant, [4, 1001])),
+    ids=["rigid stops", "compliant stops"],
 )
-def test_the_same_windows_of_all_sweeps(seeds, capsys):
-    reports = [window_search.study(seed) for seed in seeds]
-    with capsys.disabled():
-        if len(reports) > 10:
-            print("\n" + summary(reports))
-    assert sum(report.counted["windows"] for report in reports) > 5 * len(reports)
-    assert not [line for report in reports for line in report.wrong]
-
-
-@pytest.mark.parametrize(
-    "seeds",
-    [
-        pytest.param([4, 1001], marks=pytest.mark.slow, id="two"),
-        pytest.param([*range(60), *range(1000, 1060)], marks=pytest.mark.soak, id="all"),
-    ],
-)
-def test_the_same_windows_of_sweeps_with_compliant_stops(seeds, capsys):
-    reports = [window_search.study(seed, compliant=True) for seed in seeds]
-    with capsys.disabled():
-        if len(reports) > 10:
-            print("\n" + summary(reports))
-    assert sum(report.counted["windows"] for report in reports) > 5 * len(reports)
-    assert not [line for report in reports for line in report.wrong]
+def test_the_same_windows_of_all_sweeps(study, seeds):
+    counted, wrong = searched(study, seeds)
+    assert wrong == [] and counted["windows"] > 5 * len(seeds)
 
 
 @pytest.mark.slow
@@ -73,7 +51,7 @@ def test_a_window_from_its_ends(few):  # noqa: F811
     assert {end.type for window in chosen for end in (window.lower, window.upper)} == {"graze", "fold", "pitchfork"}
     with store.contents(few) as data:
         (row,) = rows_in(data, "b")
-    report, found = Report(), []
+    report, found = new_report(), []
     for window in chosen[:1] + chosen[-2:]:
         window_search.other_starts(report, lambda *line: found.append(line), window, row.bounds)
     assert report.counted["starts"] > 20 and not found

@@ -1,11 +1,8 @@
-"""Branches followed from orbits ever nearer to the graze at their end: whether the graze is said to be the same.
+"""Branches followed from orbits ever nearer to the graze at their end: whether the graze is said to be the same."""
 
-python -m support.beside_grazes 0 100 rigid             # in tests/; seeds, and `compliant` or `rigid`
-"""
-
-import sys
 from collections import Counter
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -71,6 +68,4 @@ def study(seed: int, stops: str, decades=DECADES) -> tuple[Counter, list[str]]:
     return counted, wrong
 
 
-if __name__ == "__main__":
-    *seeds, stops = sys.argv[1:4]
-    compliant_branches.search(lambda seed: study(seed, stops), *map(int, seeds))
+study_of_rigid, study_of_compliant = partial(study, stops="rigid"), partial(study, stops="compliant")

@@ -2,11 +2,8 @@
 
 Once on the branch of the simpler orbit, and from the orbit that `switch` gives, within narrow bounds of two widths:
 other starts, other units, other steps, and for some other equations.
-
-python tests/support/births.py 0 100     # what differs by more than the errors, and a summary
 """
 
-import sys
 from itertools import combinations
 from typing import NamedTuple
 
@@ -15,11 +12,14 @@ import numpy as np
 import vibro_sweep as vs
 from support.drawn_branches import drawn_oscillator
 from support.random_switching import attractor
+from support.searching import Report, new_report, size
 
 MODELS = ("two_mass", "one_mass", "linear", "chain", "ball_in_cavity")
 NUMBERS = ("b", "b", "omega", "R")
 WIDTHS = (20.0, 54.0)  # of the bounds, in distances of the born orbit from its birth
 MOST_IMPACTS = 100
+LONG = 8  # impacts
+SHARES = (0.1, 0.5, 1)  # of the error that is stated
 GENERATIONS, MOST_ORBITS = 3, 2
 
 
@@ -35,6 +35,16 @@ class LocatedTwice(NamedTuple):
     @property
     def ratio(self) -> float:
         return self.apart / self.error
+
+
+def study(seed: int) -> Report:
+    """How many pairs were compared, and those that are apart by more than both errors."""
+    report = new_report(drawn=1)
+    for pair in births(seed):
+        report.counted.update({"pairs": 1, "long": pair.impacts >= LONG, size("errors", pair.ratio, SHARES): 1})
+        if pair.ratio > 1:
+            report.wrong.append(f"{pair.where}: {pair.apart:.1e} apart, errors {pair.error:.1e}")
+    return report
 
 
 def births(seed: int) -> list[LocatedTwice]:
@@ -79,22 +89,3 @@ def _again(where: str, special, child, name: str) -> list[LocatedTwice]:
         LocatedTwice(where, K, abs(a.parameters[name] - b.parameters[name]), a.error + b.error, (a, b))
         for a, b in combinations(found, 2)
     ]
-
-
-def summary(found: list[LocatedTwice], tried: int) -> str:
-    ratios = np.array([one.ratio for one in found])
-    long = sum(one.impacts >= 8 for one in found)
-    return (
-        f"{tried} oscillators tried, {len(found)} pairs counted, {long} of orbits of 8 impacts and more: "
-        f"{np.sum(ratios > 1)} apart by more than both errors, the largest ratio {ratios.max():.2f}, "
-        f"median error {np.median([one.error / 2 for one in found]):.1e}"
-    )
-
-
-if __name__ == "__main__":
-    first, last = map(int, sys.argv[1:])
-    total = [one for number in range(first, last) for one in births(number)]
-    for one in total:
-        if one.ratio > 1:
-            print(f"{one.where}: {one.apart:.1e} apart, errors {one.error:.1e}", flush=True)
-    print(summary(total, last - first))

@@ -1,35 +1,21 @@
-"""A search for branches on which something is wrong: random ones, followed from several starts with several steps.
+"""A search for branches on which something is wrong: random ones, followed from several starts with several steps."""
 
-python tests/support/branch_search.py 0 100            # seeds; prints what disagrees, and a summary
-python tests/support/branch_search.py 0 100 one_mass   # of one model
-"""
-
-import collections
-import sys
-import time
 import traceback
-from dataclasses import dataclass, field
 
 import numpy as np
 
 from support import conditions
 from support.drawn_branches import MODELS, beyond, drawn_case
 from support.same_branch import TooLongError, differences, follow, listed, other_starts
+from support.searching import Report, new_report
 
 OFF = 1e-7
 
 
-@dataclass
-class Report:
-    counted: collections.Counter = field(default_factory=collections.Counter)
-    wrong: list[tuple[str, str, str]] = field(default_factory=list)  # (class, where, words)
-
-
 def study(seed: int, models=MODELS, deep: int = 4) -> Report:
     """Of a drawn oscillator a branch, and branches beyond its special points."""
-    rng, report = np.random.default_rng(seed), Report()
+    rng, report = np.random.default_rng(seed), new_report(drawn=1)
     case = drawn_case(models[seed % len(models)], rng)
-    report.counted["drawn"] += 1
     for depth in range(deep):
         if case is None:
             return report
@@ -39,7 +25,7 @@ def study(seed: int, models=MODELS, deep: int = 4) -> Report:
         try:
             case = beyond(branch, case, rng)
         except Exception as error:
-            report.wrong.append((f"switch raises {type(error).__name__}", f"seed {seed}.{depth}", f"{error!r:.200}"))
+            report.wrong.append(f"seed {seed}.{depth}: switch raises {error!r:.200}")
             return report
     return report
 
@@ -48,7 +34,7 @@ def examine(report: Report, where: str, case, rng):
     """Follow a branch in several ways, and check it; the branch, or None."""
 
     def wrong(kind, words):
-        report.wrong.append((kind, where, words))
+        report.wrong.append(f"{where}: {kind}: {words}")
 
     try:
         branch = follow(case)
@@ -134,26 +120,3 @@ def check(report, wrong, branch, case) -> None:
     if len(largest) and np.any(largest > 1e-5):
         k = int(np.nanargmax(largest)) + 1
         wrong("multipliers", f"point {k}, {pieces.values[k]!r}: {own[k]} and {theirs[k]}")
-
-
-def summary(reports) -> str:
-    total, kinds = collections.Counter(), collections.Counter()
-    for report in reports:
-        total.update(report.counted)
-        kinds.update({kind for kind, _, _ in report.wrong})
-    return f"{dict(total)}\nseeds with: {dict(kinds)}"
-
-
-if __name__ == "__main__":
-    first, last = map(int, sys.argv[1:3])
-    done, models = [], tuple(sys.argv[3:]) or MODELS
-    for seed in range(first, last):
-        begun = time.monotonic()
-        report = study(seed, models)
-        print("#", seed, sum(report.counted[key] for key in ("branches",)), flush=True)
-        done.append(report)
-        for line in report.wrong:
-            print(*line, sep=" | ", flush=True)
-        if time.monotonic() - begun > 20:
-            print(f"seed {seed} took {time.monotonic() - begun:.0f} s", flush=True)
-    print(summary(done))

@@ -1,10 +1,6 @@
-"""Branches of random oscillators with compliant stops, from several starts and with several lengths of steps.
-
-python tests/support/compliant_branches.py 0 100            # seeds; prints what disagrees, and a summary
-"""
+"""Branches of random oscillators with compliant stops, from several starts and with several lengths of steps."""
 
 import collections
-import sys
 
 import numpy as np
 
@@ -117,19 +113,3 @@ def study(seed: int) -> tuple[collections.Counter, list[str]]:
         for kind, difference in dict(differences(listed(branch), listed(again), size, branch.closed)).items():
             wrong.append(f"{words}: {kind}, {difference}")
     return counted, [f"seed {seed}, {case}: {line}" for line in wrong]
-
-
-def search(study, first: int, last: int) -> None:
-    """Print what is wrong of each seed, and what was counted by then."""
-    total, seeds = collections.Counter(), 0
-    for seed in range(first, last):
-        counted, wrong = study(seed)
-        total += counted
-        seeds += bool(wrong)
-        print(*wrong, sep="\n", end="\n" * bool(wrong), flush=True)
-        if seed % 10 == 9 or seed == last - 1:
-            print(f"to seed {seed}: {dict(total)}, {seeds} seeds with a disagreement", flush=True)
-
-
-if __name__ == "__main__":
-    search(study, *map(int, sys.argv[1:3]))

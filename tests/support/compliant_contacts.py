@@ -16,6 +16,7 @@ from reference.events import simulate
 from reference.machine import machine_of
 
 import vibro_sweep as vs
+from support.searching import Report, new_report, size
 from support.stiff_contacts import moved
 from vibro_sweep.model.state import coordinates
 
@@ -57,6 +58,32 @@ def drawn(seed):
     if rng.random() < 0.2:
         start[0::2] = normal / (normal @ normal) * system.b * (1 + 10 ** rng.uniform(-6, 0.3))
     return system, start
+
+
+def study(seed) -> Report:
+    """How many contacts of an oscillator were compared, and how large their errors are."""
+    found = compared(seed)
+    report, worst = new_report(drawn=1, contacts=found["compared"]), max(found["errors"].values())
+    where = f"seed {seed}, {found['masses']} masses, status {found['status']}"
+    if found["defect"]:
+        report.wrong.append(f"{where}: {found['defect']}")
+    if found["compared"]:
+        report.counted.update(
+            {"compared": 1, "each number moved alone": int("each" in found), size("errors", worst): 1}
+        )
+    if not worst <= LEAST:
+        report.wrong.append(f"{where}: {found['errors']}")
+    return report
+
+
+def study_of_sections(seed) -> Report:
+    """The sections of a sweep: how large their errors are, where anything can be compared."""
+    report, error = new_report(drawn=1), error_of_sections(seed)
+    if error is not None:
+        report.counted.update({"compared": 1, size("errors", error): 1})
+        if not error <= LEAST:
+            report.wrong.append(f"seed {seed}: {error:.3g}")
+    return report
 
 
 def compared(seed):
@@ -180,28 +207,3 @@ def errors_of(found, exact, others, together):
             unit = effects[name] + math.ulp(float(wanted))
             errors[name] = max(errors[name], float(abs(mpf(float(found[name][i])) - wanted) / unit))
     return {"errors": errors, "compared": len(found)}
-
-
-def line(report):
-    errors = " ".join(f"{error:8.2f}" for error in report["errors"].values())
-    release = "force" if report["release"] else "displacement"
-    return (
-        f"{report['seed']:5d} {report['masses']} {release:12s} {report['compared']:2d} {errors} "
-        f"{'each ' if report.get('each') else ''}"
-        f"{report['defect']}{'' if report['status'] == 'ok' else report['status']}"
-    ).rstrip()
-
-
-def table(reports):
-    """What was tried, and how large errors are."""
-    counted = [one for one in reports if one["compared"]]
-    bad = [one for one in reports if one["status"] != "ok"]
-    yield (
-        f"{len(reports)} oscillators drawn, {len(counted)} with contacts that were compared, "
-        f"{sum(one['compared'] for one in reports)} contacts; status not ok {len(bad)}, "
-        f"contacts missed or invented {sum(bool(one['defect']) for one in reports)}; "
-        f"each number moved alone in {sum(one.get('each', False) for one in reports)}"
-    )
-    for name in FIELDS:
-        half, most, largest = np.quantile([one["errors"][name] for one in counted], [0.5, 0.9, 1.0])
-        yield f"  {name:15s} 50 % {half:.2f}, 90 % {most:.2f}, largest {largest:.2f}"

@@ -1,17 +1,12 @@
-"""Curves of bifurcations of random oscillators with compliant stops, with several lengths of steps.
-
-python tests/support/compliant_curves.py 0 100            # seeds; prints what disagrees, and a summary
-python tests/support/compliant_curves.py 0 100 far        # through more of their special points, and farther
-"""
+"""Curves of bifurcations of random oscillators with compliant stops, with several lengths of steps."""
 
 import collections
-import sys
 from functools import partial
 
 import numpy as np
 
 import vibro_sweep as vs
-from support.compliant_branches import drawn_case, search
+from support.compliant_branches import drawn_case
 from support.random_curves import TYPES, key
 from support.same_branch import TooLongError, follow
 
@@ -66,6 +61,9 @@ def study(seed: int, most=2, beside=BESIDE) -> tuple[collections.Counter, list[s
     return counted, wrong
 
 
+study_far = partial(study, most=3, beside=FAR)  # through more special points, and farther
+
+
 def is_misnamed(special) -> bool:
     """Whether a point of codimension two of a motion lacks a multiplier that its type has."""
     needed = CRITICAL.get(special.type, ()) if special.orbit.ok else ()
@@ -81,8 +79,3 @@ def known(curve):
         for one in curve.special
         if one.type not in ("boundary", "failed") or not any(one is end for end in left_out)
     ]
-
-
-if __name__ == "__main__":
-    chosen = partial(study, most=3, beside=FAR) if "far" in sys.argv else study
-    search(chosen, *map(int, sys.argv[1:3]))

@@ -15,6 +15,7 @@ from reference.events import simulate
 from reference.machine import machine_of
 
 import vibro_sweep as vs
+from support.searching import Report, new_report, size
 from vibro_sweep.model.state import coordinates
 
 DIGITS = 80  # and two for each of the smallest multiplier
@@ -23,44 +24,23 @@ CLOSED = 10  # digits of the periodic orbit beyond the step
 MOST_STEPS = 8
 MOST_CONTACTS = 30  # a period
 MOST_DIGITS = 120  # of the smallest multiplier
+WITHIN = 5  # times the stated error
+PRECISE = 1e-9  # such errors say that an orbit has found its period
 CLEARANCES = np.linspace(0.3, 0.9, 8)  # in parts of the grazing clearance
 
 
-class Report(NamedTuple):
+class Compared(NamedTuple):
     """Of an oscillator; `period` 0: no periodic attractor with contacts was found."""
 
     seed: int
     system: vs.Oscillator
     period: int = 0
-    contacts: int = 0  # a period
     relaxing: int = 0  # stops that relax at the section
     share: float = 0.0  # of the time in contact
     errors: np.ndarray = np.empty(0)  # of the exponents, in units of omega
     stated: np.ndarray = np.empty(0)
     multiplier_errors: np.ndarray = np.empty(0)
     multipliers_stated: np.ndarray = np.empty(0)
-
-    def __str__(self):
-        q = self.system.linear
-        about = f"{self.seed:4d} {len(q.normal)} {'force' if q.by_force else 'displacement':12s}"
-        about += "".join(f" {law_of(q, side):32s}" for side in (1, -1))
-        if not self.period:
-            return about + " no periodic attractor with contacts"
-        return (
-            f"{about} {self.period:2d} {self.contacts:3d} {self.relaxing} {self.share:8.1e}"
-            f" {self.errors.max():8.1e} {self.stated.max():8.1e}"
-        )
-
-
-def law_of(q, side):
-    """Stiffness, damping ratio and preload of a stop, in words."""
-    wall, R, k, c, p = (
-        (q.high, q.R_high, q.k_high, q.c_high, q.p_high) if side > 0 else (q.low, q.R_low, q.k_low, q.c_low, q.p_low)
-    )
-    if math.isinf(wall):
-        return "none"
-    mass = 1 / (q.normal @ np.linalg.solve(q.M, q.normal))
-    return f"k {k:.1e} z {c / (2 * math.sqrt(k * mass)):.2g} p {p:.1g}" if k > 0 else f"R {R:.2f}"
 
 
 def drawn(seed):
@@ -103,14 +83,14 @@ def stop_of(rng, M, K, normal, release):
 
 
 def compared(seed):
-    """The `Report` on oscillator `seed`."""
+    """What is compared of oscillator `seed`."""
     system = drawn(seed)
     axis = few_contacts(system, CLEARANCES * vs.grazing(system).b)
-    return compared_at(axis, system, seed) if len(axis) else Report(seed, system)
+    return compared_at(axis, system, seed) if len(axis) else Compared(seed, system)
 
 
 def compared_at(axis, system, seed=0):
-    """The `Report` on the first periodic orbit with contacts at these clearances."""
+    """What is compared of the first periodic orbit with contacts at these clearances."""
     data = vs.sweep(
         system, {"b": axis}, transient=800, record=64, observe=["section", "lyapunov", "multipliers", "contacts"]
     )
@@ -118,18 +98,18 @@ def compared_at(axis, system, seed=0):
     usual = np.isfinite(data.lyapunov).all("exponent")  # a rest on a preloaded stop loses dimensions
     counted = np.flatnonzero((data.status == 0) & (data.period > 0) & (touched > 0) & usual)
     if not len(counted):
-        return Report(seed, system)
+        return Compared(seed, system)
     at = data.isel(b=counted[0])
     system, period = system.replace(b=float(axis[counted[0]])), int(at.period)
     state = [float(at[one.name][-1]) for one in coordinates(system.masses)]
     small = -float(at.lyapunov.min()) * period * system.period / math.log(10)
     if small > MOST_DIGITS:
-        return Report(seed, system)
+        return Compared(seed, system)
     exact, relaxing = multipliers(system.linear, state, period, math.ceil(small))
     logs = np.array([float(mp.log(abs(one))) for one in exact])
     found = at.multiplier_re.values + 1j * at.multiplier_im.values
-    return Report(
-        seed, system, period, round(int(touched[counted[0]]) * period / 64), relaxing, float(at.contact_time),
+    return Compared(
+        seed, system, period, relaxing, float(at.contact_time),
         np.abs(at.lyapunov.values - logs / (period * system.period)) / system.linear.omega,
         at.lyapunov_error.values / system.linear.omega,
         np.array([float(min(min(abs(one - other), abs(one - other.conjugate())) for other in exact)) for one in found]),
@@ -138,7 +118,7 @@ def compared_at(axis, system, seed=0):
 
 
 def compared_relaxing(seed):
-    """The `Report` on an oscillator whose two stops are touched while they relax, most of them."""
+    """What is compared of an oscillator whose two stops are touched while they relax, most of them."""
     rng = np.random.default_rng([seed, 23])
     system = drawn_relaxing(seed, rng)
     return compared_at([rng.uniform(0.03, 0.8) * vs.grazing(system).b_right], system, seed)
@@ -203,13 +183,24 @@ def multipliers(q, state, period, small):
     raise ArithmeticError(f"no periodic orbit near {state}")
 
 
-def table(reports):
-    """What was tried, what counted, and how large errors are."""
-    counted = [one for one in reports if one.period]
-    errors, stated = (np.concatenate([getattr(one, name) for one in counted]) for name in ("errors", "stated"))
-    yield (
-        f"{len(reports)} oscillators tried, {len(counted)} counted: a periodic attractor with contacts in a sweep over "
-        f"b; {sum(one.relaxing > 0 for one in counted)} with stops that relax at the section"
-    )
-    yield f"{len(errors)} exponents; largest error {errors.max():.1e} omega; beyond the stated error: "
-    yield ", ".join(f"{times} times: {np.count_nonzero(errors > times * stated)}" for times in (1, 2, 5))
+def study(seed) -> Report:
+    return reported(compared(seed))
+
+
+def study_of_relaxing(seed) -> Report:
+    return reported(compared_relaxing(seed))
+
+
+def reported(one: Compared) -> Report:
+    """How many exponents were compared, and how many times their error they are off."""
+    if not one.period:
+        return new_report(tried=1)
+    report = new_report(tried=1, orbits=1, relaxing=int(one.relaxing > 0), precise=int(one.stated.max() < PRECISE))
+    for name, errors, stated in (
+        ("exponents", one.errors, one.stated),
+        ("multipliers", one.multiplier_errors, one.multipliers_stated),
+    ):
+        ratios = errors / np.maximum(stated, np.finfo(float).tiny)
+        report.counted.update(size(name, ratio, (1, 2, WITHIN)) for ratio in ratios)
+        report.wrong.extend(f"seed {one.seed}: {name} by {ratio:.3g} errors" for ratio in ratios if not ratio <= WITHIN)
+    return report

@@ -9,6 +9,7 @@ from reference.certified import POSITIVE, REAL, of_masses
 from support.any_oscillators import drawn
 from support.decades import DECADES, EPS
 from support.near_grazes import CHAIN, flights
+from support.searching import Report, new_report
 from vibro_sweep.engine.compliant.law import LOGGED
 from vibro_sweep.engine.motion.orbits import new_records
 from vibro_sweep.engine.one_system import Engine
@@ -16,8 +17,24 @@ from vibro_sweep.engine.points import MOTION
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.model import status
 
+MASSES = (1, 2, 3)
+BATCH = {1: 4000, 2: 400, 3: 400}  # flights drawn for an oscillator
 PATHS = ("alone", "side by side")
 FOLLOWED = (status.OK, status.EVENT_LIMIT)  # bounces on a preload may be more than are followed
+
+
+def study(seed, batch=None) -> Report:
+    """Flights of one number of masses after the other; `batch` of them are drawn for an oscillator."""
+    masses, number = MASSES[seed % len(MASSES)], 1 + seed // len(MASSES)
+    rows = judge(masses, number, batch or BATCH[masses], np.random.default_rng([masses, number]))
+    report = new_report(**{"decades without flights": int((rows[0, ..., 0] == 0).sum())})
+    judged = len(DECADES) - (masses > 1)  # at 10^-15 of the clearance the terms of the gap of several are rounded away
+    for path, found in zip(PATHS, rows, strict=True):
+        total, missed, invented, contacts = found[:judged].sum((0, 1)).tolist()
+        report.counted.update({f"flights {path}": total, f"contacts {path}": contacts})
+        if missed or invented:
+            report.wrong.append(f"seed {seed}, {masses} masses, {path}: {missed} missed, {invented} invented")
+    return report
 
 
 def law(rng):

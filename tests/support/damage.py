@@ -5,12 +5,15 @@ command says and draws what it does with the whole file. An edit leaves all chec
 anew; then there may be another picture, but no traceback, no hang, and a message that names the file.
 """
 
+import atexit
 import collections
 import contextlib
+import functools
 import hashlib
 import io
 import re
 import shutil
+import tempfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
@@ -22,6 +25,7 @@ import vibro_sweep as vs
 from support.changed_files import LONG, Case, damages, edits
 from support.kinds_of_files import KINDS, PERIODIC, RAGGED, SYSTEM, WrittenKinds, write_scenes
 from support.programs import main
+from support.searching import Report
 
 HARMLESS, REFUSED, TOLD, DRAWN = "as the whole file", "refused", "told damaged", "another result"
 OUTCOMES = (HARMLESS, REFUSED, TOLD, DRAWN)
@@ -263,9 +267,23 @@ def _missing(message: str, file: str, case: Case) -> list[str]:
     return wrong + (["a long text"] if LONG[:61] in message else [])
 
 
-def in_words(name: str, counts: collections.Counter) -> str:
-    rows = [f"| {name} | command | " + " | ".join(OUTCOMES) + " |", "| --- | --- |" + " ---: |" * len(OUTCOMES)]
-    for kind, key in dict.fromkeys((kind, key) for kind, key, _ in counts):
-        numbers = [counts[kind, key, outcome] for outcome in OUTCOMES]
-        rows.append(f"| {kind} | {key} | {' | '.join(map(str, numbers))} |")
-    return "\n".join(rows)
+EVERY = (*KINDS, PERIODIC)
+CASES = 6  # of each kind of damage
+
+
+@functools.cache
+def good_files() -> WrittenKinds:
+    folder = tempfile.mkdtemp()
+    atexit.register(shutil.rmtree, folder)
+    return WrittenKinds(Path(folder))
+
+
+def study(seed: int) -> Report:
+    """Files of one kind after the other, damaged and edited, before every command: how many had which outcome."""
+    name = EVERY[seed % len(EVERY)]
+    with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
+        counts, failures = table(good_files(), name, CASES, slow=True, seed=1 + seed // len(EVERY))
+    report = Report(collections.Counter(), failures)
+    for (kind, _, outcome), count in counts.items():
+        report.counted[f"{kind}: {outcome}"] += count
+    return report

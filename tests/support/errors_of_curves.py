@@ -1,9 +1,4 @@
-"""Stated errors of points of codimension two of random systems against many digits (tests/reference/conditions.py).
-
-PYTHONPATH=tests python tests/support/errors_of_curves.py 0 100     # a line for each point, and a summary
-"""
-
-import sys
+"""Stated errors of points of codimension two of random systems, held against tests/reference/conditions.py in 30 digits."""
 
 import numpy as np
 
@@ -11,6 +6,7 @@ import vibro_sweep as vs
 from support.codimension_two import error_of, slow_impacts
 from support.curves import exact_codimension_two
 from support.random_branches import attractors, random_system
+from support.searching import Report, new_report, size
 
 OF_MONODROMY = (
     "fold_flip", "resonance_1_1", "resonance_1_2", "resonance_1_3", "resonance_1_4", "fold_neimark_sacker",
@@ -18,7 +14,18 @@ OF_MONODROMY = (
 )  # fmt: skip
 OF_GRAZES = ("double_graze", "fold_graze", "flip_graze", "pitchfork_graze", "resonant_graze")
 MOST_IMPACTS = {OF_MONODROMY: 8, OF_GRAZES: 4}  # of the orbit; with more the reference takes minutes
+SHARES = (0.1, 0.5, 1)  # of the error that is stated
 BIFURCATIONS = ("fold", "flip", "pitchfork", "neimark_sacker", "graze")
+
+
+def study(seed: int) -> Report:
+    """How many numbers were compared, and those that are off by more than their error."""
+    report = new_report(drawn=1)
+    for ratio in ratios(seed):
+        report.counted.update(["numbers", size("errors", ratio, SHARES)])
+        if not ratio < 1:
+            report.wrong.append(f"seed {seed}: {ratio:.2f} times the error")
+    return report
 
 
 def points(seed: int, most_curves=3, most_points=8):
@@ -50,21 +57,3 @@ def ratios(seed: int) -> list[float]:
                 exact = exact_codimension_two(special) if types is OF_MONODROMY else {"": error_of(special)}
                 result += [value / special.error for value in exact.values()]
     return result
-
-
-def summary(found: list[float], tried: int) -> str:
-    found = np.array(found)
-    return (
-        f"{tried} systems tried, {len(found)} numbers counted: {np.sum(found > 1)} beyond the stated error, "
-        f"the largest ratio {found.max():.2f}, median {np.median(found):.3f}"
-    )
-
-
-if __name__ == "__main__":
-    first, last = map(int, sys.argv[1:])
-    total = []
-    for number in range(first, last):
-        here = ratios(number)
-        total += here
-        print(number, np.round(here, 3), flush=True)
-    print(summary(total, last - first))

@@ -26,8 +26,11 @@ SCENE = parsed(TEXT, "the_scene.yaml")
 
 @pytest.fixture(scope="module")
 def files(tmp_path_factory):
-    """A complete file, and a part with three of four blocks."""
-    folder = tmp_path_factory.mktemp("files")
+    return write_files(tmp_path_factory.mktemp("files"))
+
+
+def write_files(folder: Path) -> Path:
+    """A complete file, whole.h5, and half.h5.part, a part with three of four blocks."""
     vs.run(SCENE, folder / "whole.h5")
 
     def stop(done, _):

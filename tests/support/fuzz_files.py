@@ -5,25 +5,30 @@ not answer. What may come out of it is little: `OUTCOMES`. Everything else is a 
 a reader that writes, and a number that is read without complaint and is not the one that was written.
 """
 
+import atexit
 import collections
 import contextlib
+import functools
 import io
 import multiprocessing
 import os
 import shutil
+import tempfile
 import traceback
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 
 import h5py
 import numpy as np
 
 import vibro_sweep as vs
-from support.files import EDITS, LINKS, TEXT, elsewhere
+from support.files import EDITS, LINKS, TEXT, elsewhere, write_files
 from support.programs import main
+from support.searching import Report
 from vibro_sweep.store import parts
 
 OUTCOMES = ("same numbers", "refused", "told damaged", "fewer points")
+NAMES = ("whole.h5", "half.h5.part")
 COMMANDS = ("info", "plot", "open", "resume")
 SECONDS = 20  # for a command on a small file
 
@@ -159,20 +164,16 @@ HOSTILE_PARTS = {
 }
 
 
-def cases(size: int, part: bool, few: int | None) -> Iterator[tuple[str, Change]]:
-    """(kind, change); `few` of each kind, by default all that are asked for."""
-
-    def some(changes: list) -> list:
-        return changes if few is None else changes[:: max(1, len(changes) // few)][:few]
-
-    for kind, changes in {
+def changes(size: int, part: bool) -> list[tuple[str, Change]]:
+    """(kind, change)"""
+    kinds = {
         "cut off": [truncated(at) for at in range(0, size, 1000)],
         "a bit flipped": [flipped] * 300,
         "a range overwritten": [range_overwritten] * 100,
         "a byte of the header": [header_byte(at) for at in range(60)],
         "made up": list((HOSTILE_PARTS if part else HOSTILE).values()),
-    }.items():
-        yield from ((kind, change) for change in some(changes))
+    }
+    return [(kind, change) for kind, some in kinds.items() for change in some]
 
 
 def command(name: str, path: Path, whole: dict[str, np.ndarray]) -> str:
@@ -263,37 +264,57 @@ def _stamp(path: Path) -> tuple[int, ...]:
     return status.st_ino, status.st_size, status.st_mtime_ns
 
 
-def fuzz(folder: Path, good: Path, few: int | None, seed: int = 1) -> tuple[collections.Counter, list[str]]:
-    """How many cases of which kind had which outcome with which command; and what failed. In the current folder."""
-    counts, failures, rng = collections.Counter(), [], np.random.default_rng(seed)
-    part = good.suffix == ".part"
-    with vs.open(folder / "whole.h5") as data:
-        whole = {name: np.asarray(data[name]) for name in data.variables}
-    worker = Worker(whole)
-    for number, (kind, change) in enumerate(cases(good.stat().st_size, part, few)):
-        place = Path(str(number))
-        place.mkdir()
-        os.chdir(place)
-        try:
-            path = Path(f"x{''.join(good.suffixes)}")
-            Path("scene.yaml").write_text(TEXT)
-            Path("victim").write_bytes(bytes(range(256)) * 20)
-            shutil.copy(folder / "whole.h5", "other.h5")
-            shutil.copy(good, path)
-            change(path, rng)
-            bystanders = {name: Path(name).read_bytes() for name in ("scene.yaml", "victim", "other.h5")}
-            before = _stamp(path)
-            for name in COMMANDS:
-                outcome = worker(name, path)
-                counts[kind, name, outcome if outcome in OUTCOMES else "FAILED"] += 1
-                if outcome not in OUTCOMES:
-                    failures.append(f"{kind} {number}, {name}: {outcome}")
-                if name != "resume" and _stamp(path) != before:
-                    failures.append(f"{kind} {number}, {name}: the file was changed")
-            if any(Path(name).read_bytes() != content for name, content in bystanders.items()):
-                failures.append(f"{kind} {number}: another file was changed")
-        finally:
-            os.chdir("..")
-            shutil.rmtree(place)
-    worker.close()
-    return counts, failures
+class Workshop:
+    """Good files, what is in them, and a process that reads changed ones."""
+
+    def __init__(self):
+        self.folder = write_files(Path(tempfile.mkdtemp()))
+        with vs.open(self.folder / "whole.h5") as data:
+            whole = {name: np.asarray(data[name]) for name in data.variables}
+        self.worker = Worker(whole)
+        self.changes = {name: changes((self.folder / name).stat().st_size, name.endswith("part")) for name in NAMES}
+
+
+@functools.cache
+def workshop() -> Workshop:
+    found = Workshop()
+    atexit.register(found.worker.close)
+    atexit.register(shutil.rmtree, found.folder)
+    return found
+
+
+def seeds_of(name: str, few: int) -> list[int]:
+    """Seeds of so many changes of each kind, of a file of this name."""
+    kinds, found = [kind for kind, _ in workshop().changes[name]], []
+    for kind in dict.fromkeys(kinds):
+        first, count = kinds.index(kind), kinds.count(kind)
+        found += [first + k * count // few for k in range(min(few, count))]
+    return [len(NAMES) * number + NAMES.index(name) for number in found]
+
+
+def study(seed: int) -> Report:
+    """A file and a part in turn, each changed in all ways one after the other: what each command says to it."""
+    shop, name = workshop(), NAMES[seed % len(NAMES)]
+    ways = shop.changes[name]
+    kind, change = ways[seed // len(NAMES) % len(ways)]
+    report = Report(collections.Counter(), [])
+    where = f"seed {seed}, {name}, {kind}"
+    with tempfile.TemporaryDirectory() as place, contextlib.chdir(place):
+        path = Path(f"x{''.join(Path(name).suffixes)}")
+        Path("scene.yaml").write_text(TEXT)
+        Path("victim").write_bytes(bytes(range(256)) * 20)
+        shutil.copy(shop.folder / "whole.h5", "other.h5")
+        shutil.copy(shop.folder / name, path)
+        change(path, np.random.default_rng([1, seed]))
+        bystanders = {other: Path(other).read_bytes() for other in ("scene.yaml", "victim", "other.h5")}
+        before = _stamp(path)
+        for command in COMMANDS:
+            outcome = shop.worker(command, path)
+            report.counted[f"{kind}, {command}: {outcome if outcome in OUTCOMES else 'failed'}"] += 1
+            if outcome not in OUTCOMES:
+                report.wrong.append(f"{where}, {command}: {outcome}")
+            if command != "resume" and _stamp(path) != before:
+                report.wrong.append(f"{where}, {command}: the file was changed")
+        if any(Path(other).read_bytes() != content for other, content in bystanders.items()):
+            report.wrong.append(f"{where}: another file was changed")
+    return report

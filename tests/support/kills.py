@@ -22,6 +22,7 @@ import numpy as np
 
 from support.clusters import Cluster
 from support.kinds_of_files import COMPLIANT, KINDS, write_scenes
+from support.searching import Report, new_report
 
 ALL = KINDS | COMPLIANT
 KILLED = tuple(name for name in ALL if name != "orbit")  # which is one block
@@ -248,3 +249,14 @@ def measure(place: Path, name: str, by: str, count: int, seed: int) -> list[Run]
             assert "follow" in name or again <= len(kills) * (1 if by == "1 worker" else 2), f"{where}: more is lost"
             assert contents(output) == contents(whole), f"{where}: another file"
     return found
+
+
+def study(seed: int) -> Report:
+    """Two runs of a kind of file by threads, processes or Dask, all in turn; AssertionError as of `measure`."""
+    cases = list(itertools.product(KILLED, BY))
+    name, by = cases[seed % len(cases)]
+    with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
+        runs = measure(Path(folder), name, by, 2, 5 + seed // len(cases))
+    report = new_report(runs=len(runs))
+    report.counted.update(f"{kill.how}, {kill.when}" for run in runs for kill in run.kills)
+    return report

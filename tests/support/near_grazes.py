@@ -10,11 +10,25 @@ from reference.certified import POSITIVE, REAL, of_masses
 
 from support.any_oscillators import drawn
 from support.decades import DECADES, EPS
+from support.searching import Report, new_report
 from vibro_sweep.engine.one_system import Engine
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.model import status
 
+MASSES = (1, 2, 3, 4, 5, 8)
+BATCH = 4000  # flights drawn for an oscillator: some end behind a stop where they should begin
 CHAIN = 8 * EPS  # of the largest terms of the gap along the flight: rounding allowed from the section to the contact
+
+
+def study(seed) -> Report:
+    """Flights of one number of masses after the other, whose extrema lie before a stop and behind it."""
+    masses, number = MASSES[seed % len(MASSES)], 1 + seed // len(MASSES)
+    rows = judge(masses, number, BATCH, np.random.default_rng([masses, number]))
+    total, missed, invented, contacts = rows.sum((0, 1)).tolist()
+    report = new_report(flights=total, contacts=contacts, **{"decades without flights": int((rows[..., 0] == 0).sum())})
+    if missed or invented:
+        report.wrong.append(f"seed {seed}, {masses} masses: {missed} missed, {invented} invented")
+    return report
 
 
 def flights(reference, system, count, rng):

@@ -1,33 +1,21 @@
 """Branches of attractors of random systems, held against simulation on their stable pieces and at the ends of these.
 
-python tests/support/random_branches.py 0 200                 # prints what disagrees, and a summary
-python tests/support/random_branches.py 0 200 oscillators     # one and three masses, unequal stops, any damping
+Oscillators have one mass or three, unequal stops and any damping.
 """
 
 import itertools
 import math
-import sys
-from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 
 import vibro_sweep as vs
 from support.any_oscillators import positive
+from support.searching import Report, new_report
 from vibro_sweep.model.linear import amplitudes, static_state
 
 MOST_PERIODS = 20_000  # of one simulation
 INSIDE = (2e-3, 2e-2, 0.1, 0.5, 1.0)  # from the end of a piece to the point before it
-
-
-@dataclass
-class Report:
-    seed: int
-    branches: int = 0
-    pieces: int = 0
-    compared: int = 0  # points
-    ends: int = 0
-    sticking: int = 0  # attractors that rest
-    wrong: list[str] = field(default_factory=list)
 
 
 def random_system(rng) -> vs.System:
@@ -122,7 +110,7 @@ def compare(report, where, orbit, tolerance=1e-9):
     off = np.abs(reached - orbit.state).max() / max(system.b, np.abs(orbit.state).max())
     speed = np.abs(orbit.impacts["v1"]).min(initial=np.inf) / (system.omega * system.b)
     allowed = (1e-5 if slow else tolerance) / min(1.0, speed)
-    report.compared += 1
+    report.counted["compared"] += 1
     if not off < allowed:
         report.wrong.append(f"{where}: simulation ends {off:.1e} away, multiplier {largest:.6f}")
     near_section = np.any(np.abs(np.sin(np.pi * orbit.impacts["t"] / system.period)) < 1e-6)
@@ -146,8 +134,8 @@ DRAWN = {
 }
 
 
-def study(seed: int, kind: str = "systems") -> Report:
-    rng, report = np.random.default_rng(seed), Report(seed)
+def study(seed: int, kind: str) -> Report:
+    rng, report = np.random.default_rng(seed), new_report(drawn=1)
     draw, names = DRAWN[kind]
     system = draw(rng)
     found = attractors(system, rng)
@@ -156,7 +144,7 @@ def study(seed: int, kind: str = "systems") -> Report:
         state, n = found[k % len(found)]
         orbit = vs.periodic_orbit(system, state=state, periods=n)
         if orbit.status == "sticking":
-            report.sticking += 1
+            report.counted["sticking"] += 1
             continue
         where = f"seed {seed}, period {n}, {name}"
         if not (orbit.ok and n % orbit.period == 0 and orbit.stable):  # just beyond a flip the doubled one dies slowly
@@ -164,7 +152,7 @@ def study(seed: int, kind: str = "systems") -> Report:
             continue
         n = orbit.period
         branch = vs.continue_orbit(orbit, name, bounds_of(system, name))
-        report.branches += 1
+        report.counted["branches"] += 1
         for special in branch.special:
             unknown = special.type == "failed" or not (special.error < 1e-10 or special.type == "closed")
             if unknown or not (special.orbit.ok or special.type == "sticking"):
@@ -172,13 +160,16 @@ def study(seed: int, kind: str = "systems") -> Report:
         points = branch.points
         inside = np.abs(points.multiplier_re + 1j * points.multiplier_im).values.max(axis=1)
         for first, last in pieces(points, inside, branch.special, name):
-            report.pieces += 1
+            report.counted["pieces"] += 1
             for i in np.unique(np.linspace(first + 1, last - 1, 10).astype(int)):
                 if first < i < last and inside[i] < 1:
                     compare(report, f"{where}, point {i}", orbit_at(system, name, points, i, i, 0.0, n))
             for end, inner in ((first, first + 1), (last, last - 1)):
                 hold_end(report, where, system, name, branch, points, end, inner, n, (n, orbit.symmetric))
     return report
+
+
+study_of_systems, study_of_oscillators = partial(study, kind="systems"), partial(study, kind="oscillators")
 
 
 def pieces(points, largest, special, name):
@@ -201,7 +192,7 @@ def hold_end(report, where, system, name, branch, points, end, inner, n, kind):
         orbit = orbit_at(system, name, points, end, inner, share, n)
         if orbit.ok and (orbit.period, orbit.symmetric) == kind:
             break
-    report.ends += 1
+    report.counted["ends"] += 1
     compare(report, f"{where}, inside {special.type} at {p[end]:.9g}", orbit)
     outside = system.replace(**{name: float(2 * p[end] - getattr(orbit.system, name))})
     reached = vs.simulate(outside, within(outside, orbit.state), MOST_PERIODS).section[-1]
@@ -209,18 +200,3 @@ def hold_end(report, where, system, name, branch, points, end, inner, n, kind):
     same = (other.itinerary, other.period, other.symmetric) == (orbit.itinerary, orbit.period, orbit.symmetric)
     if other.ok and other.stable and same and np.abs(other.state - orbit.state).max() < 0.02 * system.b:
         report.wrong.append(f"{where}, outside {special.type} at {p[end]:.9g}: the orbit still attracts")
-
-
-def summary(reports) -> str:
-    counted = "branches", "pieces", "compared", "ends", "sticking"
-    total = {key: sum(getattr(report, key) for report in reports) for key in counted}
-    lines = [line for r in reports for line in r.wrong]
-    return "\n".join([*lines, f"{len(reports)} systems, {total}, {len(lines)} disagreements"])
-
-
-if __name__ == "__main__":
-    done = []
-    for number in range(*map(int, sys.argv[1:3])):
-        done.append(study(number, *sys.argv[3:4]))
-        print(done[-1], flush=True)
-    print(summary(done))

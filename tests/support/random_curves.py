@@ -1,17 +1,14 @@
 """Bifurcation curves of random systems, held against simulation, and against the same curves from other points and
-with other steps.
+with other steps."""
 
-python tests/support/random_curves.py 0 100     # prints what disagrees, and a summary
-"""
-
-import sys
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
 import numpy as np
 
 import vibro_sweep as vs
 from support.curves import chosen, solution_at
 from support.random_branches import attractors, random_system
+from support.searching import Report, new_report
 from vibro_sweep.analysis.branches.branch_run import stop_and_impact
 from vibro_sweep.analysis.periodic.periodic_orbit import orbit_of
 from vibro_sweep.types import SpecialPoint
@@ -21,18 +18,9 @@ CLOSE = 1e-9  # of the state after a period of simulation, relative, times the l
 BESIDE = 1e-4  # relative distance of the two sides from a point
 
 
-@dataclass
-class Report:
-    seed: int
-    curves: int = 0
-    points: int = 0  # compared with simulation, on each side
-    again: int = 0  # times that curves were followed from another point, or with other steps
-    codimension_two: int = 0
-    wrong: list[str] = field(default_factory=list)
-
-
-def compare(seed: int, most_curves=4) -> Report:
-    report, rng = Report(seed), np.random.default_rng(seed)
+def study(seed: int, most_curves=4) -> Report:
+    """`points` are compared with simulation on each side; `again` curves from another point or with other steps."""
+    report, rng = new_report(systems=1), np.random.default_rng(seed)
     system = random_system(rng)
     for state, periods in attractors(system, rng, most=1):
         orbit = vs.periodic_orbit(system, state=state, periods=periods)
@@ -41,17 +29,17 @@ def compare(seed: int, most_curves=4) -> Report:
         branch = vs.continue_orbit(orbit, "b", (0.5 * system.b, 1.5 * system.b))
         specials = [special for special in branch.special if special.type in TYPES]
         for special in specials[:most_curves]:
-            _follow(report, special, rng)
+            _follow(report, seed, special, rng)
     return report
 
 
-def _follow(report: Report, special, rng) -> None:
+def _follow(report: Report, seed: int, special, rng) -> None:
     b, omega = special.parameters["b"], special.orbit.system.omega
     bounds = ((0.9 * b, 1.1 * b), (0.95 * omega, 1.05 * omega))
     curve = vs.bifurcation_curve(special, ("b", "omega"), bounds)
-    report.curves += 1
-    report.codimension_two += len(curve.special) - 2 * (not curve.closed)
-    where = f"seed {report.seed}, {special.type} at b = {b!r}"
+    report.counted["curves"] += 1
+    report.counted["codimension two"] += len(curve.special) - 2 * (not curve.closed)
+    where = f"seed {seed}, {special.type} at b = {b!r}"
     if any(end.type == "failed" for end in (curve.begins, curve.ends)):
         report.wrong.append(f"{where}: failed")
     for k in chosen(curve, 3):
@@ -61,7 +49,7 @@ def _follow(report: Report, special, rng) -> None:
     for factor in (0.5, 2.0):
         again = vs.bifurcation_curve(special, ("b", "omega"), bounds, step=factor)
         ways[f"with steps of {factor} times the length"] = again
-    report.again += len(ways)
+    report.counted["again"] += len(ways)
     for way, other in ways.items():
         pairs = [sorted(map(key, one.special)) for one in (curve, other)]
         same = len(pairs[0]) == len(pairs[1]) and all(
@@ -103,7 +91,7 @@ def simulate_beside(report: Report, curve, k, where: str) -> None:
         run = vs.simulate(orbit.system, orbit.state, orbit.period)
         size = np.abs(run.section).max() * max(1.0, np.abs(orbit.multipliers).max())
         error = np.abs(run.section[-1] - orbit.state).max() / size
-        report.points += 1
+        report.counted["points"] += 1
         if error > CLOSE or len(run.impacts) != len(orbit.impacts):
             report.wrong.append(f"{where}: point {k} differs from simulation by {error:.1e}")
 
@@ -111,19 +99,3 @@ def simulate_beside(report: Report, curve, k, where: str) -> None:
 def _system(curve, family) -> vs.System:
     system = curve.special[0].orbit.system
     return system.replace(**{name: family.numbers[name] for name in curve.parameters})
-
-
-def main(first: int, last: int) -> None:
-    total = Report(-1)
-    for seed in range(first, last):
-        report = compare(seed)
-        for name in ("curves", "points", "again", "codimension_two"):
-            setattr(total, name, getattr(total, name) + getattr(report, name))
-        total.wrong += report.wrong
-        for line in report.wrong:
-            print(line, flush=True)
-    print(f"{last - first} systems: {total}")
-
-
-if __name__ == "__main__":
-    main(*map(int, sys.argv[1:]))

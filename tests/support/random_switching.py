@@ -1,11 +1,6 @@
 """Branches of attractors of random oscillators of all models, from branch to branch: what `switch` gives at their
-special points is held against simulation, and no branch may come twice.
+special points is held against simulation, and no branch may come twice."""
 
-PYTHONPATH=tests python tests/support/random_switching.py 0 100 one_mass     # prints what is wrong, and a summary
-"""
-
-import sys
-from dataclasses import dataclass, field
 from itertools import combinations
 
 import numpy as np
@@ -13,31 +8,12 @@ import numpy as np
 import vibro_sweep as vs
 from support.any_oscillators import positive
 from support.random_branches import random_oscillator, random_system, within
+from support.searching import Report, new_report
 
 CLOSE = 1e-9  # of the state after a period of simulation, relative, times the largest multiplier
 TELLS = 1e7  # largest multiplier with which a simulation over one period says something
 APART = 1e-6  # of the size of the gap: states of one orbit that differ by less are the same
 MOST_BRANCHES = 12
-
-
-@dataclass
-class Report:
-    seed: int
-    branches: int = 0
-    specials: int = 0  # at which `switch` was called
-    orbits: int = 0  # that it gave
-    simulated: int = 0  # of these, with a simulation that says something
-    followed: int = 0
-    pairs: int = 0  # of branches of one kind that were compared
-    wrong: list[str] = field(default_factory=list)
-
-    def add(self, other: "Report") -> None:
-        for name in COUNTED:
-            setattr(self, name, getattr(self, name) + getattr(other, name))
-        self.wrong += other.wrong
-
-
-COUNTED = ("branches", "specials", "orbits", "simulated", "followed", "pairs")
 
 
 def one_mass(rng) -> vs.Oscillator:
@@ -99,8 +75,10 @@ DRAWN = {
 }
 
 
-def study(seed: int, kind: str, depth: int = 1) -> Report:
-    rng, report = np.random.default_rng([seed, *map(ord, kind)]), Report(seed)
+def study(seed: int) -> Report:
+    """Of one kind of oscillators after the other; `simulated` counts orbits of which a simulation says something."""
+    kind, number = list(DRAWN)[seed % len(DRAWN)], seed // len(DRAWN)
+    rng, report = np.random.default_rng([number, *map(ord, kind)]), new_report(drawn=1)
     draw, names = DRAWN[kind]
     system = draw(rng)
     name = str(rng.choice(names))
@@ -112,8 +90,8 @@ def study(seed: int, kind: str, depth: int = 1) -> Report:
     width = 0.3 * (abs(value) or 1.0)
     least = -np.inf if name == "offset" else 0.0
     bounds = (max(value - width, least), min(value + width, 1.0 if name == "R" else np.inf))
-    where = f"{kind} {seed}, {orbit.itinerary or 'free'} of period {orbit.period} in {name}"
-    _hold(report, where, orbit, name, bounds, depth)
+    where = f"seed {seed}, {kind}, {orbit.itinerary or 'free'} of period {orbit.period} in {name}"
+    _hold(report, where, orbit, name, bounds)
     return report
 
 
@@ -133,23 +111,23 @@ def attractor(system, rng, tries=4):
     return None
 
 
-def _hold(report: Report, where: str, orbit, name: str, bounds, depth: int) -> None:
+def _hold(report: Report, where: str, orbit, name: str, bounds) -> None:
     try:
-        found = vs.follow_branches(orbit, name, bounds, depth=depth)
+        found = vs.follow_branches(orbit, name, bounds, depth=1)
     except ValueError as error:
         report.wrong.append(f"{where}: follow_branches raises {error}")
         return
-    report.branches += len(found)
-    report.wrong += [f"{where}: branch {i} failed" for i, item in enumerate(found) if not item.branch.ok]
+    report.counted["branches"] += len(found)
+    report.wrong.extend(f"{where}: branch {i} failed" for i, item in enumerate(found) if not item.branch.ok)
     for i, item in enumerate(found[:MOST_BRANCHES]):
         for special in item.branch.special:
             if special.type in ("graze", "pitchfork", "flip"):
-                report.specials += 1
+                report.counted["specials"] += 1
                 there = f"{where}, branch {i}, {special.type} at {special.parameters[name]!r}"
                 _switched(report, there, special, name, bounds)
     for i, j in combinations(range(len(found)), 2):
         if _kind(found[i].branch) == _kind(found[j].branch):
-            report.pairs += 1
+            report.counted["pairs"] += 1
             if _same(found[i].branch, found[j].branch, name):
                 report.wrong.append(f"{where}: branches {i} and {j} are one")
 
@@ -161,7 +139,7 @@ def _switched(report: Report, where: str, special, name: str, bounds) -> None:
         report.wrong.append(f"{where}: switch raises {error}")
         return
     for orbit in orbits:
-        report.orbits += 1
+        report.counted["orbits"] += 1
         here = f"{where}: {orbit.itinerary} of period {orbit.period}"
         if not orbit.ok:
             report.wrong.append(f"{here}: {orbit.status}")
@@ -172,7 +150,7 @@ def _switched(report: Report, where: str, special, name: str, bounds) -> None:
             reach = bounds[1] - bounds[0]
             near = max(bounds[0], value - reach), min(bounds[1], value + reach)
             branch = vs.continue_orbit(orbit, name, near)
-            report.followed += 1
+            report.counted["followed"] += 1
             if not branch.ok or branch.points.sizes["point"] < 2:
                 report.wrong.append(f"{here}: it cannot be followed")
 
@@ -190,7 +168,7 @@ def _simulated(report: Report, where: str, orbit) -> None:
     states, q = run.section, system.linear
     size = max(np.abs(states).max(), 1e-300)
     gap = max(np.abs(states[:, ::2] @ q.normal).max(), *(abs(x) for x in (q.low, q.high) if np.isfinite(x)), 1e-300)
-    report.simulated += 1
+    report.counted["simulated"] += 1
     error = np.abs(states[-1] - orbit.state).max() / size
     if not error < CLOSE * largest:
         report.wrong.append(f"{where}: simulation ends {error:.1e} away, multiplier {largest:.1e}")
@@ -240,25 +218,3 @@ def _same(one, other, name: str) -> bool:
         if min(np.abs(state - section).max() for section in sections) < 1e-8 * max(np.abs(state).max(), 1e-300):
             return True
     return False
-
-
-def summary(reports: list[Report], kind: str) -> str:
-    total = Report(-1)
-    for report in reports:
-        total.add(report)
-    counted = sum(report.orbits > 0 for report in reports)
-    counts = ", ".join(f"{getattr(total, name)} {name}" for name in COUNTED)
-    return "\n".join(
-        [*total.wrong, f"{kind}: {len(reports)} tried, {counted} counted: {counts}, {len(total.wrong)} wrong"]
-    )
-
-
-if __name__ == "__main__":
-    first, last, *kinds = sys.argv[1:]
-    for kind in kinds or DRAWN:
-        done = []
-        for number in range(int(first), int(last)):
-            done.append(study(number, kind))
-            for line in done[-1].wrong:
-                print(line, flush=True)
-        print(summary(done, kind).splitlines()[-1], flush=True)

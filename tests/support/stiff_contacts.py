@@ -13,11 +13,13 @@ from mpmath import mp, mpf
 
 import vibro_sweep as vs
 from support.drawn_stiff import drawn
+from support.searching import Report, new_report, size
 
 DIGITS = 50
 COUNT = 6  # impacts compared
 MOVES = 4
 BETWEEN = 1e-9  # of the largest gap: so far behind a stop a flight is still between them
+LARGEST = 10  # error, in units of what rounding the data does
 CHAOS = 1e-8  # part of a time by which rounding moves it, from which on nothing is compared
 PERIODS = 4
 NEAR = 0.5  # of a flight: a contact farther than this from the impact that was found is another one
@@ -165,6 +167,22 @@ def moved(q, state, rng):
     return SimpleNamespace(**numbers), list(one(state))
 
 
+def study(seed) -> Report:
+    """How many impacts of an oscillator were compared, and how large their errors are."""
+    found = compared(seed)
+    if "refused" in found:
+        return new_report(drawn=1, refused=1, **{f"refused, {found['refused']}": 1})
+    where = ", ".join(f"{name} {found[name]}" for name in ("seed", "masses", "ratio", "offset/b", "damper"))
+    report = new_report(drawn=1, impacts=found.get("compared", 0))
+    if "defect" in found:
+        report.wrong.append(f"{where}: {found['defect']}")
+    for name, error in found["errors"].items():
+        report.counted[size("errors", error)] += 1
+        if not error <= LARGEST:
+            report.wrong.append(f"{where}: error of {name} {error:.3g}")
+    return report
+
+
 def compared(seed):
     """What is wrong with the first impacts of oscillator `seed`, in units of what rounding its numbers does."""
     system, state, report = drawn(seed)
@@ -191,7 +209,7 @@ def judged(system, state, hits, seed, end=None):
         if (missed or len(true) < len(hits)) and is_decided(system, state, hits, true, seed, end):
             return {"errors": {}, "defect": "another impact"}
         errors, count = errors_of(system, state, hits, true, seed, MOVES)
-        if max(errors.values()) > 10:  # few moves may by accident do next to nothing to one of the numbers
+        if max(errors.values()) > LARGEST:  # few moves may by accident do next to nothing to one of the numbers
             errors, count = errors_of(system, state, hits, true, seed, 4 * MOVES)
     return {"errors": errors, "compared": count}
 

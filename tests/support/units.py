@@ -2,18 +2,13 @@
 
 Lengths and forces are then multiplied by 2^k, which rounds nothing; but the equations, which are lengths, stand beside
 a row that is none, so that eliminations may take another order.
-
-python tests/support/units.py 0 100     # prints what differs, and a summary
 """
-
-import sys
-from collections import Counter
-from dataclasses import dataclass, field
 
 import numpy as np
 
 import vibro_sweep as vs
 from support.drawn_branches import drawn_orbit, drawn_oscillator
+from support.searching import Report, new_report
 from vibro_sweep.model.arguments import is_number
 
 LENGTHS = ("b", "offset", "F", "constant", "force", "force_cos")
@@ -24,14 +19,6 @@ SWITCHED = ("flip", "pitchfork", "graze")
 ENDS = ("closed", "boundary", "failed")
 CLOSE = 1e-13  # relative difference of special points, beyond their errors
 BORN = 1e-6  # the same, of what begins at them, at a small amplitude or beside a graze
-
-
-@dataclass
-class Report:
-    seed: int
-    calls: Counter = field(default_factory=Counter)  # compared, by function
-    types: Counter = field(default_factory=Counter)  # of special points from which `switch` or a curve was compared
-    wrong: list[str] = field(default_factory=list)
 
 
 def unit_of(name: str, k: int) -> float:
@@ -95,7 +82,7 @@ class Pair:
 
     def alike(self, what: str, one, other) -> bool:
         """Whether two lists of special points or orbits say the same; two at the same place may change their order."""
-        self.report.calls[what.split()[0]] += 1
+        self.report.counted[what.split()[0]] += 1
         one, other = (sorted(found, key=lambda x: repr(words_of(x, self.mirrored))) for found in (one, other))
         words = [[words_of(x, self.mirrored) for x in found] for found in (one, other)]
         if words[0] != words[1]:
@@ -122,13 +109,13 @@ class Pair:
         return pairs
 
     def switch(self, pair):
-        self.report.types[pair[0].type] += 1
+        self.report.counted[f"from {pair[0].type}"] += 1
         found = [vs.switch(special) for special in pair]
         return list(zip(*found, strict=True)) if self.alike(f"switch from {pair[0].type}", *found) else []
 
     def curve(self, pair, names, bounds):
         """`bifurcation_curve`, and `switch` from its points of codimension two."""
-        self.report.types[f"curve of {pair[0].type}"] += 1
+        self.report.counted[f"curve of {pair[0].type}"] += 1
         units = np.array([unit_of(name, self.k) for name in names])
         found = []
         for special, factors in zip(pair, (np.ones(2), units), strict=True):
@@ -154,7 +141,7 @@ class Pair:
 
 
 def study(seed: int, most_curves=2) -> Report:
-    report, rng = Report(seed), np.random.default_rng([11, seed])
+    report, rng = new_report(drawn=1), np.random.default_rng([11, seed])
     model = str(rng.choice(MODELS))
     system = drawn_oscillator(model, rng)
     orbit = drawn_orbit(system, rng)
@@ -178,19 +165,3 @@ def study(seed: int, most_curves=2) -> Report:
             pair.curve(points, (name, other), (bounds, limits))
         pair.followed(orbits, name, bounds)
     return report
-
-
-def summary(reports: list[Report]) -> str:
-    calls, types = (sum((getattr(report, of) for report in reports), Counter()) for of in ("calls", "types"))
-    counted = sum(bool(report.calls) for report in reports)
-    wrong = sum(len(report.wrong) for report in reports)
-    return f"{len(reports)} tried, {counted} counted, {wrong} wrong: {dict(calls)}; from {dict(types)}"
-
-
-if __name__ == "__main__":
-    done = []
-    for number in range(*map(int, sys.argv[1:])):
-        done.append(study(number))
-        for line in done[-1].wrong:
-            print(line[:700], flush=True)
-    print(summary(done))

@@ -1,23 +1,18 @@
-"""A search for windows that are wrong: random sweeps with half and twice the values, and with other starts.
-
-python tests/support/window_search.py 0 100            # seeds; prints what disagrees, and a summary
-python tests/support/window_search.py 0 100 compliant  # with compliant stops; seeds from 1000 on with `release: force`
-"""
+"""A search for windows that are wrong: random sweeps with half and twice the values, and with other starts."""
 
 import itertools
-import sys
 import tempfile
-import time
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
 import vibro_sweep as vs
 from support import conditions
-from support.branch_search import Report, summary
 from support.compliant_branches import BY_FORCE, drawn_stops
 from support.compliant_branches import MODELS as COMPLIANT
 from support.drawn_branches import MODELS, drawn_number, drawn_oscillator
+from support.searching import Report, new_report
 from support.windows import check_end
 from vibro_sweep import store
 from vibro_sweep.analysis.periodic.periodic_orbit import orbit_of
@@ -79,7 +74,7 @@ def off_and_largest(orbit) -> tuple[float, float]:
 
 
 def study(seed: int, compliant: bool = False) -> Report:
-    rng, report = np.random.default_rng([seed, 1]), Report()
+    rng, report = np.random.default_rng([seed, 1]), new_report()
     model, system = drawn(seed, compliant, rng)
     name, (lo, hi) = drawn_number(system, rng)
     lo = max(lo, 0.0) if name in ("c_stop", "preload") else lo
@@ -88,7 +83,7 @@ def study(seed: int, compliant: bool = False) -> Report:
     where = f"sweep {seed}, {model}, {name} {lo:.9g} .. {hi:.9g}, {count} values"
 
     def wrong(kind, words):
-        report.wrong.append((kind, where, words))
+        report.wrong.append(f"{where}: {kind}: {words}")
 
     found = []
     with tempfile.TemporaryDirectory() as folder:
@@ -113,6 +108,9 @@ def study(seed: int, compliant: bool = False) -> Report:
                 for b in other:
                     same_window(report, wrong, a, b, hi - lo)
     return report
+
+
+study_of_compliant = partial(study, compliant=True)
 
 
 def one_window(report, wrong, window, size) -> None:
@@ -251,25 +249,3 @@ def same_window(report, wrong, a, b, size) -> None:
             wrong("ends differ", f"{a.itinerary or 'free'} of period {a.period}: {x.type} {p!r} and {y.type} {q!r}")
         elif not abs(p - q) <= 10 * (x.error + y.error) and x.type != "boundary":
             wrong("errors of ends", f"{x.type} {p!r} and {q!r}: {x.error:.1e}, {y.error:.1e}")
-
-
-if __name__ == "__main__":
-    first, last = map(int, sys.argv[1:3])
-    done = []
-    for seed in range(first, last):
-        begun = time.monotonic()
-        done.append(study(seed, compliant=sys.argv[3:] == ["compliant"]))
-        print(
-            "#",
-            seed,
-            done[-1].counted["sweeps"],
-            done[-1].counted["windows"],
-            done[-1].counted["pairs"],
-            done[-1].counted["starts"],
-            flush=True,
-        )
-        for line in dict.fromkeys(done[-1].wrong):
-            print(*line, sep=" | ", flush=True)
-        if time.monotonic() - begun > 60:
-            print(f"sweep {seed} took {time.monotonic() - begun:.0f} s", flush=True)
-    print(summary(done))

@@ -1,10 +1,19 @@
-"""Oscillators some of whose exponents are 0, drawn at random; roots of free motion in many digits."""
+"""Oscillators some of whose exponents are 0, drawn at random; roots of free motion in many digits.
+
+Free motion is compared with its roots in 100 digits, regular motion with the exponents 0 that integrable systems have,
+and chaos with the exponents of a record 100 times as long.
+"""
+
+import math
 
 import numpy as np
 from mpmath import mp
 
 import vibro_sweep as vs
+from support.searching import Report, new_report, size
 
+WITHIN = 5  # times the stated error
+CERTAIN = 2.0  # standard errors by which an exponent must differ from zero to be above or below it
 DIGITS, NOTHING = 100, 1e-25  # a root of multiplicity m keeps DIGITS/m of them
 
 
@@ -76,3 +85,70 @@ def dissipative(seed):
         return vs.Oscillator.named("one_mass", k=1.0, F=1.0, **common), b * rng.uniform(-0.9, 0.9, 2)
     numbers = {"mu_m": 10 ** rng.uniform(-1, 1), "mu_k": 10 ** rng.uniform(-1, 1), "f2": rng.uniform(0, 1)}
     return vs.System(**numbers, **common), b * rng.uniform(-0.9, 0.9, 4)
+
+
+def compare(report: Report, where: str, far, error) -> None:
+    """Count numbers that are off by `far`, and how many times their error that is."""
+    ratios = far / np.maximum(error, np.finfo(float).tiny)
+    report.counted["exponents"] += len(ratios)
+    report.counted.update(size("exponents", ratio, (1, 2, WITHIN)) for ratio in ratios)
+    report.wrong.extend(f"{where}: off by {ratio:.3g} errors" for ratio in ratios if not ratio <= WITHIN)
+
+
+def study_of_free_motion(seed, most=4) -> Report:
+    """Of up to `most` masses; zeros must be exactly 0."""
+    report, system = new_report(drawn=1), free(seed, most)
+    found = vs.lyapunov(system, np.zeros(2 * len(system.linear.M)), 300, 100)
+    if np.isnan(found).any():
+        return report
+    known, exact = np.isfinite(found), real_parts(system)
+    compare(report, f"seed {seed}", np.abs(found - exact)[known], found.error[known])
+    report.counted["zeros"] += np.count_nonzero(exact == 0)
+    report.wrong.extend(f"seed {seed}: {one} for 0" for one in found[exact == 0] if one != 0)
+    return report
+
+
+def study_of_regular_motion(seed) -> Report:
+    """One mass: both exponents are 0. Two masses: those of the flow and of the energy are, and all come in pairs."""
+    report, (system, start) = new_report(drawn=1), regular(seed) if seed % 2 == 0 else of_two_masses(seed)
+    found = vs.lyapunov(system, start, 1300, 200)
+    zero = found if len(found) == 2 else np.array([found[1], found[2], found[0] + found[3]])
+    compare(report, f"seed {seed}", np.abs(zero), found.error[: len(zero)])
+    report.counted["chaotic"] += int(len(found) == 4 and found[0] > CERTAIN * found.error[0])
+    return report
+
+
+def scatter(running, T):
+    """The standard error of exponents from `lyapunov_running` (periods, n), by parts and their correlation alone."""
+    periods = len(running)
+    growth = running * np.arange(1, periods + 1)[:, None] * T
+    ends = np.arange(1, 21) * (periods // 20) - 1
+    rates = np.diff(growth[ends], axis=0, prepend=0) / (periods // 20 * T) - running[-1]
+    squares = (rates**2).sum(axis=0)
+    c = np.clip((rates[1:] * rates[:-1]).sum(axis=0) / squares + 1 / 20, 0, 0.8)
+    return np.sqrt(squares / (20 * 19) * (1 + c) / (1 - c))
+
+
+def study_of_chaos(seed) -> Report:
+    """Whether chaos is told from zero as well as by the scatter of parts of the record alone.
+
+    Of an orbit whose lambda_1 > 0 is certain from a record 100 times as long.
+    """
+    report, (system, start) = new_report(drawn=1), dissipative(seed)
+    how = {"observe": ["section", "lyapunov", "convergence"], "start": start, "transient": 1300}
+    short = vs.sweep(system, {"b": [system.b]}, record=200, **how).isel(b=0)
+    if not (short.period == 0 and short.status == 0 and np.isfinite(short.lyapunov).all()):
+        return report
+    long = vs.lyapunov(system, start, 1300, 20_000)
+    if not long[0] > 5 * long.error[0]:
+        return report
+    m = int(np.argmax(short.lyapunov_running[-1].values))
+    alone = float(scatter(short.lyapunov_running.values, system.period)[m])
+    found, error = float(short.lyapunov[0]), float(short.lyapunov_error[0])
+    shear = math.log(2) / (200 * system.period)
+    report.counted["certain"] += 1
+    report.counted.update({"by the scatter": int(found > CERTAIN * alone), "as stated": int(found > CERTAIN * error)})
+    report.counted.update([size("errors over the scatter", error / alone, (1, 1.2, 2))])
+    if not math.isclose(error, max(alone, shear), rel_tol=1e-6, abs_tol=1e-12):
+        report.wrong.append(f"seed {seed}: error {error:.3g}, by the scatter {alone:.3g}, of the shear {shear:.3g}")
+    return report

@@ -1,26 +1,17 @@
-"""Random oscillators over the whole allowed range: the first events of each orbit against exact flights.
+"""Random oscillators of two masses over the whole allowed range: the first events of each orbit against exact flights.
 
-Orbit number n is always the same one. `python tests/accuracy/test_search.py FIRST LAST [WORKERS]` checks orbits
-FIRST ... LAST - 1, prints one line of JSON for each and a table at the end.
+Orbit number n is always the same one.
 """
 
-import json
 import math
-import os
-import sys
-import time
-from collections import Counter
-from concurrent.futures import ProcessPoolExecutor
-from functools import partial
-from multiprocessing import get_context
 
 import numpy as np
-import pytest
 from mpmath import mp, mpf
 from reference.exponentials import TooManySwingsError
-from reference.follow import DIGITS, NEAR, Follower
+from reference.follow import DIGITS, Follower
 
 import vibro_sweep as vs
+from support.searching import Report, new_report, size
 from vibro_sweep.engine.one_system import Engine
 from vibro_sweep.engine.tables.cells import STIFF_CELLS
 from vibro_sweep.model.grazing import steady_response
@@ -29,6 +20,8 @@ SEED = 11
 EVENTS = 30
 SAMPLES = 300
 PERIODS = (1, 8, 64)  # simulated one after the other until there are enough events
+COUNTED = ("checked", "grazes", "unchecked")
+SIZES = (1, 10, 100, 1000)
 CLASSES = ("sticks", "R < 0.1", "stiff", "both stops in a cell")
 # Error allowed, in units of the effect of rounding (follow.py). Within a cell a stiff flight takes up to 10^4 small
 # steps, each of which is rounded: the largest that was found is 2700.
@@ -130,9 +123,8 @@ def beyond_a_stop(orbit, follower, until):
     return worst, at
 
 
-def check(n):
-    """Everything about orbit n, for JSON."""
-    begun = time.perf_counter()
+def checked(n):
+    """Everything about orbit n."""
     numbers, state, start_time = draw(n)
     report = {"n": n, "kind": KINDS[n % len(KINDS)]}
     try:
@@ -143,7 +135,7 @@ def check(n):
         return report | {"accepted": False, "why": error.key}
     report |= {"status": str(orbit.status), "events": events, "accepted": orbit.status == "ok" or events >= EVENTS}
     if not report["accepted"]:
-        return report | {"why": str(orbit.status), "numbers": numbers, "state": state, "start_time": start_time}
+        return report | {"why": str(orbit.status)}
     end = None if orbit.status != "ok" else float(orbit.section_times[-1])
     impacts = [tuple(x.item() for x in hit) for hit in orbit.impacts[: EVENTS + 1]]
     rests = [
@@ -174,92 +166,19 @@ def check(n):
         except TooManySwingsError as error:
             found.unchecked += 1
             report["too long"] = str(error)
-    report |= {name: getattr(found, name) for name in ("checked", "grazes", "unchecked", "errors", "defects")}
-    if found.defects or any(e[0] > NEAR for e in found.errors.values()):
-        report |= {"numbers": numbers, "state": state, "start_time": start_time}
-    return report | {"seconds": round(time.perf_counter() - begun, 2)}
+    return report | {name: getattr(found, name) for name in (*COUNTED, "errors", "defects")}
 
 
-def check_safely(n):
-    try:
-        return check(n)
-    except Exception as error:  # a search goes on; the line says what happened
-        return {"n": n, "accepted": False, "why": f"{type(error).__name__}: {error}"}
-
-
-def table(reports):
-    """Counts of each class, largest errors and defects, as text."""
-    accepted = [r for r in reports if r["accepted"]]
-    lines = [f"orbits {len(reports)}, accepted {len(accepted)}"]
-    lines += [f"  refused, {why}: {k}" for why, k in Counter(r["why"] for r in reports if not r["accepted"]).items()]
-    for name in CLASSES:
-        lines.append(f"  {name}: {sum(r[name] for r in accepted)}")
-    for name in ("checked", "grazes", "unchecked"):
-        lines.append(f"  {name}: {sum(r[name] for r in accepted)}")
-    lines.append("largest error, in units of the effect of rounding; quantiles of the orbits' largest")
-    for kind in ("t", "v1", "x2", "v2", "t_on", "t_off"):
-        worst = [(*r["errors"][kind][:2], r["n"]) for r in accepted if kind in r["errors"]]
-        if worst:
-            half, most, nearly_all = np.quantile([w[0] for w in worst], [0.5, 0.9, 0.99])
-            ratio, absolute, n = max(worst)
-            line = f"  {kind:6s} {ratio:9.3g} (orbit {n}, absolute {absolute:.1e})"
-            lines.append(line + f"; 50 % {half:.2g}, 90 % {most:.2g}, 99 % {nearly_all:.2g}")
-    beyond = [(r["beyond"], r["n"]) for r in accepted if "beyond" in r]
-    if beyond:
-        lines.append(f"  x1 beyond a stop: {max(beyond)[0]:.3g} (orbit {max(beyond)[1]})")
-    kinds = Counter(d["kind"] for r in accepted for d in r["defects"])
-    lines += [f"  defect, {kind}: {k}" for kind, k in kinds.items()] or ["  no defect"]
-    return "\n".join(lines)
-
-
-def search(numbers, workers=None, tell=None):
-    reports = []
-    with ProcessPoolExecutor(workers or os.cpu_count(), mp_context=get_context("spawn")) as pool:
-        for report in pool.map(check_safely, numbers, chunksize=4):
-            reports.append(report)
-            if tell:
-                tell(json.dumps(report))
-    return reports
-
-
-def hold(reports):
-    """No defect, nothing left out, and no error beyond `LARGEST`."""
-    failed = [r for r in reports if not r["accepted"] and ":" in r["why"]]
-    assert not failed, failed
-    accepted = [r for r in reports if r["accepted"]]
-    assert not [(r["n"], d) for r in accepted for d in r["defects"]]
-    assert not [(r["n"], kind, e) for r in accepted for kind, e in r["errors"].items() if not e[0] <= LARGEST]
-
-
-@pytest.mark.slow
-def test_a_few_orbits():
-    """The first, and some that once failed: M1 beyond a stop, M2 moved, while chatter is summed up."""
-    reports = [check(n) for n in (*range(2), 1783, 4019, 4025)]
-    hold(reports)
-    assert max(report.get("beyond", 0.0) for report in reports) > 0  # x1 is not cut off at the stops
-
-
-@pytest.mark.slow
-def test_two_hundred_orbits(capsys):
-    reports = search([*range(200), 2101])  # and one of which a contact was once missed
-    with capsys.disabled():
-        print("\n" + table(reports))
-    hold(reports)
-    assert sum(r["accepted"] for r in reports) > 180
-
-
-@pytest.mark.soak
-def test_five_thousand_orbits(capsys):
-    reports = search(range(5700))
-    with capsys.disabled():
-        print("\n" + table(reports))
-    accepted = [r for r in reports if r["accepted"]]
-    assert len(accepted) >= 5000
-    for name in CLASSES:
-        assert sum(r[name] for r in accepted) >= 1000, name
-    hold(reports)
-
-
-if __name__ == "__main__":
-    first, last, *workers = map(int, sys.argv[1:])
-    print(table(search(range(first, last), *workers, tell=partial(print, flush=True))))
+def study(n) -> Report:
+    """What became of orbit n, how many of its events were compared, and how large errors are, in units of rounding."""
+    found = checked(n)
+    if not found["accepted"]:
+        return new_report(orbits=1, **{f"refused, {found['why']}": 1})
+    report = new_report(orbits=1, accepted=1, **{name: int(found[name]) for name in (*CLASSES, *COUNTED)})
+    report.wrong.extend(f"orbit {n}: {defect}" for defect in found["defects"])
+    errors = {name: error[0] for name, error in found["errors"].items()} | {"beyond a stop": found.get("beyond", 0.0)}
+    for name, error in errors.items():
+        report.counted[size("errors", error, SIZES)] += 1
+        if not error <= LARGEST:
+            report.wrong.append(f"orbit {n}: error of {name} {error:.3g}")
+    return report
