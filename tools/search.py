@@ -50,7 +50,7 @@ KINDS = {  # its study, in tests/support
     "scenes": "any_scenes.study",
     "runs-of-scenes": "any_scenes.study_of_runs",
     "extreme-numbers": "any_scenes.study_of_extremes",
-    "files": "fuzz_files.study",
+    "files": "fuzzed_commands.study",
     "files-of-all-kinds": "damage.study",
     "kills": "kills.study",
     "units": "units.study",
@@ -86,15 +86,15 @@ def main(words: list[str] | None = None) -> int:
     parser.add_argument("first", type=int)
     parser.add_argument("last", type=int)
     parser.add_argument("--workers", type=int, default=1)
-    given = parser.parse_args(words)
-    seeds, total = range(given.first, given.last), new_report()
-    for seed, report in zip(seeds, reports(given.kind, seeds, given.workers), strict=True):
+    options = parser.parse_args(words)
+    seeds, total = range(options.first, options.last), new_report()
+    for seed, report in zip(seeds, reports(options.kind, seeds, options.workers), strict=True):
         total.counted.update(report.counted)
         total.wrong.extend(report.wrong)
         print(*report.wrong, sep="\n", end="\n" * bool(report.wrong), flush=True)
         if (seed + 1) % EVERY == 0 or seed == seeds[-1]:
             counts = ", ".join(f"{name} {count}" for name, count in total.counted.items())
-            print(f"{given.kind}, seeds {given.first} to {seed}: {len(total.wrong)} wrong; {counts}", flush=True)
+            print(f"{options.kind}, seeds {options.first} to {seed}: {len(total.wrong)} wrong; {counts}", flush=True)
     return 1 if total.wrong else 0
 
 

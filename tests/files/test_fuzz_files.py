@@ -1,8 +1,8 @@
-"""Files and parts damaged or made up in every way: tests/support/fuzz_files.py."""
+"""Files and parts damaged or made up in every way: tests/support/fuzzed_commands.py."""
 
 import pytest
 from support import slow_cases
-from support.fuzz_files import COMMANDS, seeds_of, study
+from support.fuzzed_commands import COMMANDS, seeds_of, study
 from support.searching import searched
 
 

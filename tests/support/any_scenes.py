@@ -83,20 +83,20 @@ def agreement(n: int, status: int) -> tuple[str, list[str]]:
 def study_of_runs(n: int) -> Report:
     """The run of valid scene n, by several ways. Raises AssertionError where a result is not what it must be."""
     try:
-        one = parsed(to_yaml(scene(n)))
+        valid = parsed(to_yaml(scene(n)))
     except vs.SceneError as error:  # a sweep may lead behind a stop, or into resonance
         assert BEYOND_THE_SCHEMA.search(str(error)), str(error)
         return new_report(refused=1)
-    whole, _ = computed(one, 10**6, None)
+    whole, _ = computed(valid, 10**6, None)
     well = int(np.count_nonzero(np.isin(whole["status"], VALID)))
-    _hold(one, whole, n)
-    parts, _ = computed(one, 1 + n % 3, 1 + n % 11)
+    _hold(valid, whole, n)
+    parts, _ = computed(valid, 1 + n % 3, 1 + n % 11)
     assert_same_bits(parts, whole)
     if n % 10 == 0:  # through the file, by several workers
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "out.h5"
-            report = vs.run(one, path, workers=1 + n // 10 % 3)
-            assert report.points == one.n_points and report.bad == whole["status"].size - well
+            report = vs.run(valid, path, workers=1 + n // 10 % 3)
+            assert report.points == valid.n_points and report.bad == whole["status"].size - well
             with h5py.File(path) as file:
                 # attractors are numbered when all points are there
                 kept = {name: values for name, values in whole.items() if name != "attractor_id"}
@@ -112,10 +112,10 @@ def study_of_extremes(seed: int) -> Report:
     numbers |= {name: choose.choice(sizes) for name in choose.sample(list(numbers), 3) if name not in ("f2", "R")}
     orbit, observe = {"transient": 3, "record": 5}, ["section", "lyapunov", "impacts"]
     try:
-        one = parsed(to_yaml({"system": numbers, "orbit": orbit, "observe": observe}))
+        valid = parsed(to_yaml({"system": numbers, "orbit": orbit, "observe": observe}))
     except vs.SceneError as error:
         return Report(Counter(refused=1), [] if BEYOND_THE_SCHEMA.search(str(error)) else [f"seed {seed}: {error}"])
-    arrays, _ = computed(one, 1, None)
+    arrays, _ = computed(valid, 1, None)
     status = int(arrays["status"])
     well = not np.isnan(arrays["lyapunov"]).any() and np.isfinite(arrays["x1"]).all()
     bad = status in VALID and not well

@@ -62,17 +62,17 @@ def drawn(seed):
 
 def study(seed) -> Report:
     """How many contacts of an oscillator were compared, and how large their errors are."""
-    found = compared(seed)
-    report, worst = new_report(drawn=1, contacts=found["compared"]), max(found["errors"].values())
-    where = f"seed {seed}, {found['masses']} masses, status {found['status']}"
-    if found["defect"]:
-        report.wrong.append(f"{where}: {found['defect']}")
-    if found["compared"]:
+    result = compared(seed)
+    report, worst = new_report(drawn=1, contacts=result["compared"]), max(result["errors"].values())
+    where = f"seed {seed}, {result['masses']} masses, status {result['status']}"
+    if result["defect"]:
+        report.wrong.append(f"{where}: {result['defect']}")
+    if result["compared"]:
         report.counted.update(
-            {"compared": 1, "each number moved alone": int("each" in found), size("errors", worst): 1}
+            {"compared": 1, "each number moved alone": int("each" in result), size("errors", worst): 1}
         )
     if not worst <= LEAST:
-        report.wrong.append(f"{where}: {found['errors']}")
+        report.wrong.append(f"{where}: {result['errors']}")
     return report
 
 

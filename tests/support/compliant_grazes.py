@@ -29,8 +29,8 @@ def study(seed, batch=None) -> Report:
     rows = judge(masses, number, batch or BATCH[masses], np.random.default_rng([masses, number]))
     report = new_report(**{"decades without flights": int((rows[0, ..., 0] == 0).sum())})
     judged = len(DECADES) - (masses > 1)  # at 10^-15 of the clearance the terms of the gap of several are rounded away
-    for path, found in zip(PATHS, rows, strict=True):
-        total, missed, invented, contacts = found[:judged].sum((0, 1)).tolist()
+    for path, of_path in zip(PATHS, rows, strict=True):
+        total, missed, invented, contacts = of_path[:judged].sum((0, 1)).tolist()
         report.counted.update({f"flights {path}": total, f"contacts {path}": contacts})
         if missed or invented:
             report.wrong.append(f"seed {seed}, {masses} masses, {path}: {missed} missed, {invented} invented")

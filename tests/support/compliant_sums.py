@@ -117,4 +117,4 @@ def study(seed) -> Report:
 def study_of_relaxing(seed) -> Report:
     """Motion has one multiplier more than states there; where it is one of a pair with the last one both count."""
     counted, worst = summed_relaxing(seed)
-    return Report(Counter(points=counted), [f"seed {seed}: {worst:.3g} times the residual"] * (not worst < 1))
+    return Report(Counter(points=int(counted)), [f"seed {seed}: {worst:.3g} times the residual"] * (not worst < 1))

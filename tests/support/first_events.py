@@ -171,12 +171,12 @@ def checked(n):
 
 def study(n) -> Report:
     """What became of orbit n, how many of its events were compared, and how large errors are, in units of rounding."""
-    found = checked(n)
-    if not found["accepted"]:
-        return new_report(orbits=1, **{f"refused, {found['why']}": 1})
-    report = new_report(orbits=1, accepted=1, **{name: int(found[name]) for name in (*CLASSES, *COUNTED)})
-    report.wrong.extend(f"orbit {n}: {defect}" for defect in found["defects"])
-    errors = {name: error[0] for name, error in found["errors"].items()} | {"beyond a stop": found.get("beyond", 0.0)}
+    result = checked(n)
+    if not result["accepted"]:
+        return new_report(orbits=1, **{f"refused, {result['why']}": 1})
+    report = new_report(orbits=1, accepted=1, **{name: int(result[name]) for name in (*CLASSES, *COUNTED)})
+    report.wrong.extend(f"orbit {n}: {defect}" for defect in result["defects"])
+    errors = {name: error[0] for name, error in result["errors"].items()} | {"beyond a stop": result.get("beyond", 0.0)}
     for name, error in errors.items():
         report.counted[size("errors", error, SIZES)] += 1
         if not error <= LARGEST:

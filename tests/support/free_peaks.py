@@ -20,10 +20,10 @@ def study(seed) -> Report:
     b = gap_amplitude(numbers, name, start) * 10 ** rng.uniform(0.02, 1.2)
     expected = stretch(numbers, name, start, bounds, b)
     branch = vs.continue_orbit(vs.periodic_orbit(vs.System(**numbers, R=0.8, b=b), itinerary=""), name, bounds)
-    found = [branch.begins.parameters[name], branch.ends.parameters[name]]
+    ends = [branch.begins.parameters[name], branch.ends.parameters[name]]
     report = new_report(branches=1, peaks=sum(end not in bounds for end in expected))
-    if not np.allclose(found, expected, rtol=1e-9, atol=0):
-        report.wrong.append(f"seed {seed}, {name} with b = {b}: {found}, and by samples {expected}")
+    if not np.allclose(ends, expected, rtol=1e-9, atol=0):
+        report.wrong.append(f"seed {seed}, {name} with b = {b}: {ends}, and by samples {expected}")
     return report
 
 

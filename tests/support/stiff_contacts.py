@@ -169,14 +169,14 @@ def moved(q, state, rng):
 
 def study(seed) -> Report:
     """How many impacts of an oscillator were compared, and how large their errors are."""
-    found = compared(seed)
-    if "refused" in found:
-        return new_report(drawn=1, refused=1, **{f"refused, {found['refused']}": 1})
-    where = ", ".join(f"{name} {found[name]}" for name in ("seed", "masses", "ratio", "offset/b", "damper"))
-    report = new_report(drawn=1, impacts=found.get("compared", 0))
-    if "defect" in found:
-        report.wrong.append(f"{where}: {found['defect']}")
-    for name, error in found["errors"].items():
+    result = compared(seed)
+    if "refused" in result:
+        return new_report(drawn=1, refused=1, **{f"refused, {result['refused']}": 1})
+    where = ", ".join(f"{name} {result[name]}" for name in ("seed", "masses", "ratio", "offset/b", "damper"))
+    report = new_report(drawn=1, impacts=result.get("compared", 0))
+    if "defect" in result:
+        report.wrong.append(f"{where}: {result['defect']}")
+    for name, error in result["errors"].items():
         report.counted[size("errors", error)] += 1
         if not error <= LARGEST:
             report.wrong.append(f"{where}: error of {name} {error:.3g}")

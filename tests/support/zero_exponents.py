@@ -98,23 +98,23 @@ def compare(report: Report, where: str, far, error) -> None:
 def study_of_free_motion(seed, most=4) -> Report:
     """Of up to `most` masses; zeros must be exactly 0."""
     report, system = new_report(drawn=1), free(seed, most)
-    found = vs.lyapunov(system, np.zeros(2 * len(system.linear.M)), 300, 100)
-    if np.isnan(found).any():
+    exponents = vs.lyapunov(system, np.zeros(2 * len(system.linear.M)), 300, 100)
+    if np.isnan(exponents).any():
         return report
-    known, exact = np.isfinite(found), real_parts(system)
-    compare(report, f"seed {seed}", np.abs(found - exact)[known], found.error[known])
-    report.counted["zeros"] += np.count_nonzero(exact == 0)
-    report.wrong.extend(f"seed {seed}: {one} for 0" for one in found[exact == 0] if one != 0)
+    known, exact = np.isfinite(exponents), real_parts(system)
+    compare(report, f"seed {seed}", np.abs(exponents - exact)[known], exponents.error[known])
+    report.counted["zeros"] += int(np.count_nonzero(exact == 0))
+    report.wrong.extend(f"seed {seed}: {number} for 0" for number in exponents[exact == 0] if number != 0)
     return report
 
 
 def study_of_regular_motion(seed) -> Report:
     """One mass: both exponents are 0. Two masses: those of the flow and of the energy are, and all come in pairs."""
     report, (system, start) = new_report(drawn=1), regular(seed) if seed % 2 == 0 else of_two_masses(seed)
-    found = vs.lyapunov(system, start, 1300, 200)
-    zero = found if len(found) == 2 else np.array([found[1], found[2], found[0] + found[3]])
-    compare(report, f"seed {seed}", np.abs(zero), found.error[: len(zero)])
-    report.counted["chaotic"] += int(len(found) == 4 and found[0] > CERTAIN * found.error[0])
+    exponents = vs.lyapunov(system, start, 1300, 200)
+    zero = exponents if len(exponents) == 2 else np.array([exponents[1], exponents[2], exponents[0] + exponents[3]])
+    compare(report, f"seed {seed}", np.abs(zero), exponents.error[: len(zero)])
+    report.counted["chaotic"] += int(len(exponents) == 4 and exponents[0] > CERTAIN * exponents.error[0])
     return report
 
 
@@ -144,10 +144,12 @@ def study_of_chaos(seed) -> Report:
         return report
     m = int(np.argmax(short.lyapunov_running[-1].values))
     alone = float(scatter(short.lyapunov_running.values, system.period)[m])
-    found, error = float(short.lyapunov[0]), float(short.lyapunov_error[0])
+    exponent, error = float(short.lyapunov[0]), float(short.lyapunov_error[0])
     shear = math.log(2) / (200 * system.period)
     report.counted["certain"] += 1
-    report.counted.update({"by the scatter": int(found > CERTAIN * alone), "as stated": int(found > CERTAIN * error)})
+    report.counted.update(
+        {"by the scatter": int(exponent > CERTAIN * alone), "as stated": int(exponent > CERTAIN * error)}
+    )
     report.counted.update([size("errors over the scatter", error / alone, (1, 1.2, 2))])
     if not math.isclose(error, max(alone, shear), rel_tol=1e-6, abs_tol=1e-12):
         report.wrong.append(f"seed {seed}: error {error:.3g}, by the scatter {alone:.3g}, of the shear {shear:.3g}")
