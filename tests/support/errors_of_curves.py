@@ -1,4 +1,4 @@
-"""Stated errors of points of codimension two of random systems, held against tests/reference/conditions.py in 30 digits."""
+"""Stated errors of points of codimension two of random systems against 30 digits (tests/reference/conditions.py)."""
 
 import numpy as np
 
