@@ -1,21 +1,18 @@
 """docs/reference/glossary.md: every key, option, argument and variable is in it, once, and nothing else."""
 
 import inspect
+import json
 import re
 from fnmatch import fnmatchcase
 
-import typer
 from support import ROOT
+from support.programs import ended
 
 import vibro_sweep as vs
 from vibro_sweep import types
-from vibro_sweep.cli.commands import app
-from vibro_sweep.model.branch_file import BRANCHES, CHART, WINDOWS, columns
-from vibro_sweep.model.curve_columns import OF_EDGES
-from vibro_sweep.model.observables import VARIABLES
-from vibro_sweep.scene import json_schema
 
-TEXT = (ROOT / "docs" / "reference" / "glossary.md").read_text()
+REFERENCE = ROOT / "docs" / "reference"
+TEXT = (REFERENCE / "glossary.md").read_text()
 OF_NUMPY = {"Exponents", "Status"}  # an array and a text, with the methods of these
 
 
@@ -26,24 +23,23 @@ def words(title):
 
 
 def keys(node):
+    """Of the JSON Schema of scenes."""
     if isinstance(node, dict):
         yield from node.get("properties", {})
-        for one in node.values():
-            yield from keys(one)
-    elif isinstance(node, list):
-        for one in node:
-            yield from keys(one)
+    if isinstance(node, (dict, list)):
+        for inner in node.values() if isinstance(node, dict) else node:
+            yield from keys(inner)
 
 
 def arguments():
     functions = [getattr(vs, name) for name in vs.__all__]
     classes = [getattr(types, name) for name in types.__all__ if name not in OF_NUMPY]
     functions += [
-        one
+        method
         for kind in classes
         if inspect.isclass(kind)
-        for name, one in inspect.getmembers(kind, inspect.isfunction)
-        if not name.startswith("_") and one.__module__.startswith("vibro_sweep")
+        for name, method in inspect.getmembers(kind, inspect.isfunction)
+        if not name.startswith("_") and method.__module__.startswith("vibro_sweep")
     ]
     for function in functions:
         if not (inspect.isclass(function) and function.__init__ is Exception.__init__):
@@ -54,36 +50,32 @@ def arguments():
             yield from (name for name in signature.parameters if name != "self")
 
 
-def options():
-    for command in typer.main.get_command(app).commands.values():
-        for one in command.params:
-            yield from (option.lstrip("-") for option in one.opts if not re.fullmatch("-.", option))
-
-
-def variables():
-    yield from (one.name for one in VARIABLES)
-    for kind in (BRANCHES, WINDOWS, CHART):
-        yield from (one.name for one in columns(kind, ["b"], 2))
-    yield from (one.name for one in OF_EDGES)
+def in_tables(page, pattern, heading=""):
+    """What a page of the reference, or its part behind a heading, has in the first column of its tables; it is made by
+    the program."""
+    rows = re.findall(r"^\| (`.*?`) \|", (REFERENCE / page).read_text().partition(heading or "\n")[2], re.M)
+    return {word for row in rows for word in re.findall(pattern, row)}
 
 
 def missing(found, known):
-    return sorted(one for one in found if not any(fnmatchcase(one, word) for word in known))
+    return sorted(name for name in found if not any(fnmatchcase(name, word) for word in known))
 
 
 def test_keys_options_and_arguments_are_in_it():
     known = words("Keys, options and arguments")
-    found = {*keys(json_schema()), *arguments(), *options()}
-    assert len(found) > 150 and missing(found, known) == []
-    assert [word for word in known if not any(fnmatchcase(one, word) for one in found)] == []
+    options = in_tables("commands.md", r"--([a-z-]+)")
+    found = {*keys(json.loads(ended("schema").out)), *arguments(), *options}
+    assert len(found) > 150 and len(options) > 18 and missing(found, known) == []
+    assert [word for word in known if not any(fnmatchcase(name, word) for name in found)] == []
 
 
 def test_variables_are_in_it():
     known = words("Variables of files")
-    found = {*variables(), "gap"}
-    numbers = {"b", *(f"{letter}{i}" for letter in "xv" for i in (1, 2))}  # keys
-    assert len(found) > 90 and missing(found - numbers, known) == []
-    assert [word for word in known if not any(fnmatchcase(one, word) for one in found)] == []
+    found = {"gap"}.union(*(in_tables(page, r"^`(\w+)`$") for page in ("sweep_files.md", "branch_files.md")))
+    dimensions = in_tables("sweep_files.md", r"^`(\w+)`$", "## Dimensions\n")
+    numbers = {"b", "omega", *(f"{letter}{i}" for letter in "xv" for i in (1, 2))}  # keys
+    assert len(found) > 90 and len(dimensions) > 8 and missing(found - numbers - dimensions, known) == []
+    assert [word for word in known if not any(fnmatchcase(name, word) for name in found)] == []
 
 
 def test_a_word_has_one_meaning():

@@ -30,7 +30,3 @@ def test_numbers_of_the_errata():
     for name, value, rounding in (("b*", graze.b, 2e-14), ("tau*", graze.tau, 1e-12)):
         said = [float(number) for number in re.findall(rf"{re.escape(name)} = (\d\.\d{{9,}})", PAGE)]
         assert said and all(abs(number - value) < rounding for number in said), (name, said, value)
-
-
-def test_the_sketch_is_there():
-    assert (ROOT / "docs" / "oscillator.svg").read_text().startswith("<?xml")

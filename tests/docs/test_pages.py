@@ -1,4 +1,8 @@
-"""Every command and snippet of README and docs, page by page in order, twice in a row, in a folder of its own."""
+"""Every command and snippet of README and docs, page by page in order, in a folder of its own.
+
+Cells of notebook pages and scripts of the gallery run in the build of the site alone (test_site.py). What a command
+does when it is repeated, commands/test_cli.py says.
+"""
 
 import os
 import re
@@ -74,7 +78,7 @@ def marked(name):
 
 
 @pytest.mark.parametrize("name", [marked(name) for name, snippets in PAGES.items() if snippets])
-def test_page_twice(tmp_path, name):
+def test_page(tmp_path, name):
     for folder in ("configs", "docs"):
         shutil.copytree(ROOT / folder, tmp_path / folder)
     shutil.copy(ROOT / "CITATION.cff", tmp_path)
@@ -91,21 +95,20 @@ def test_page_twice(tmp_path, name):
         "PATH": os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]]),
         "PYTHONPATH": str(tmp_path / "stand_ins"),
     }
-    for _ in range(2):
-        for language, text in PAGES[name]:
-            network = NETWORK if namespace else ""
-            ending = f"trap '{ENDING}' EXIT"
-            script = f"set -e\n{network}{ending}\n{command_of(language, text)}\n"
-            done = subprocess.run(
-                [*namespace, "bash", "-c", script],
-                cwd=tmp_path,
-                env=environment,
-                capture_output=True,
-                text=True,
-                check=False,
-            )
-            assert done.returncode == 0, f"{text}\n{done.stdout}\n{done.stderr}"
-            assert_as_said(text, done.stdout)
+    for language, text in PAGES[name]:
+        network = NETWORK if namespace else ""
+        ending = f"trap '{ENDING}' EXIT"
+        script = f"set -e\n{network}{ending}\n{command_of(language, text)}\n"
+        done = subprocess.run(
+            [*namespace, "bash", "-c", script],
+            cwd=tmp_path,
+            env=environment,
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        assert done.returncode == 0, f"{text}\n{done.stdout}\n{done.stderr}"
+        assert_as_said(text, done.stdout)
 
 
 def assert_as_said(text, printed):
@@ -139,3 +142,11 @@ def test_every_block_is_executed(path):
         assert executed or marked, f"{path}:{place + 1}: {language}"
     name = str(path.relative_to(ROOT))
     assert len(plain) - sum(lines[place - 1].strip().startswith(NOT_RUN) for place in plain) == len(PAGES[name])
+
+
+def test_the_pictures_of_the_readme_are_there_and_no_others():
+    text = (ROOT / "README.md").read_text()
+    shown = re.findall(r"!\[[^]]*\]\(docs/([^)]+)\)", text) + re.findall(r'<img src="docs/([^"]+)"', text)
+    drawn = (path for path in (ROOT / "docs").iterdir() if path.suffix in (".png", ".svg", ".gif"))
+    assert {path.name for path in drawn} == {*shown} and len(shown) > 2
+    assert (ROOT / "docs" / "oscillator.svg").read_text().startswith("<?xml")

@@ -1,0 +1,60 @@
+"""The tables inside the package: what is declared in one place, and what is made of it elsewhere in the package."""
+
+import ast
+
+import numpy as np
+import pytest
+from support import ROOT
+from support.scene_texts import parsed
+
+from vibro_sweep.cli import reference
+from vibro_sweep.driver.blocks import plan_of
+from vibro_sweep.engine.records import POINT, new_results, result_of
+from vibro_sweep.engine.simd.jit import ENGINE, SHARED
+from vibro_sweep.model.dimensions import DIMENSIONS
+from vibro_sweep.model.observables import VARIABLES
+from vibro_sweep.model.parameters import NAMES
+
+PAPER = "system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0.1, omega: 0.63, R: 0.8, b: 6.6}"
+NEEDS = {"section": "states", "lyapunov": "states lyapunov", "impacts": "impacts", "convergence": "states lyapunov",
+         "multipliers": "states lyapunov", "attractors": "states lyapunov attractors"}  # fmt: skip
+
+
+def test_records_of_the_kernels_have_the_types_of_files():
+    inside = [row for row in VARIABLES if row.in_kernel]
+    assert POINT.names[: len(NAMES)] == NAMES and len(inside) > 20
+    for row in inside:
+        field, shape = result_of(2)[row.name], tuple(DIMENSIONS[name].extent for name in row.dimensions)
+        assert (field.base, field.shape) == (np.dtype(row.dtype), shape)
+        np.testing.assert_array_equal(new_results(())[row.name], np.full(shape, row.fill))
+
+
+def test_reference_pages_are_up_to_date():
+    old = [name for name, text in reference.pages(ROOT).items() if (ROOT / "docs/reference" / name).read_text() != text]
+    assert old == [], "python -m vibro_sweep.cli.reference docs/reference"
+
+
+@pytest.mark.parametrize("word, needed", NEEDS.items())
+def test_nothing_else_is_computed(word, needed):
+    plan = plan_of(parsed(f"{PAPER}\norbit: {{transient: 3, record: 60}}\nobserve: [{word}]\n"))
+    assert {name for name in ("states", "lyapunov", "impacts", "attractors") if getattr(plan, name)} == {
+        *needed.split()
+    }
+    assert bool(plan.parts) == bool(plan.lyapunov)
+
+
+def test_kernels_compile_in_only_what_names_their_cache():
+    """An edit to any other module of the model leaves the compiled kernels as they are."""
+    jitted = 0
+    for path in ENGINE.rglob("*.py"):
+        tree = ast.parse(path.read_text())
+        homes = {}
+        for node in ast.walk(tree):
+            if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("vibro_sweep.model"):
+                homes |= {alias.name: f"{[*node.module.split('.'), alias.name][2]}.py" for alias in node.names}
+        for node in (node for node in tree.body if isinstance(node, ast.FunctionDef)):
+            if {"jit", "inline", "noinline", "exported"} & {ast.unparse(mark) for mark in node.decorator_list}:
+                jitted += 1
+                used = {name.id for name in ast.walk(node) if isinstance(name, ast.Name)}
+                assert {homes[name] for name in used & homes.keys()} <= {*SHARED}, (path, node.name)
+    assert jitted > 100
