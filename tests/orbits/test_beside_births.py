@@ -3,8 +3,6 @@
 import numpy as np
 import pytest
 from support.branches import types
-from support.drawn_branches import Case
-from support.same_branch import follow
 
 import vibro_sweep as vs
 from vibro_sweep.analysis.branches.branch_run import BranchRun
@@ -40,20 +38,6 @@ def test_the_way_to_a_birth_turns_round_at_no_fold(omega):
 FREE = vs.Oscillator.named(
     "one_mass", k=0.0, zeta=0.0, F=1.8506852088671144, omega=0.8293795190899775, b=0.9019202943756924, tau=0.3, R=0.6227
 )
-
-
-@pytest.mark.parametrize("width", [3.7e-4, 1e-3])
-def test_narrow_bounds_around_a_birth(width):
-    """In bounds so narrow rounding moves points by more than Newton's method allows, beside the birth."""
-    branch = vs.continue_orbit(vs.periodic_orbit(FREE, itinerary="LLRR"), "R", (0.55, 0.7))
-    birth = next(special for special in branch.special if special.type == "pitchfork")
-    value = birth.parameters["R"]
-    orbits = vs.switch(birth)
-    assert len(orbits) == 2
-    for orbit in orbits:
-        found = types(vs.continue_orbit(orbit, "R", (value - width, value + width)))
-        assert [kind for kind, _ in found] == ["boundary", "pitchfork"]
-        assert abs(found[1][1] - value) < 1e-14
 
 
 def test_a_step_that_lands_before_a_birth_by_less_than_rounding():
@@ -110,18 +94,6 @@ def mirrored_ball(b: float):
         "ball_in_cavity", mass_ratio=0.017271819450076657, zeta=0.016963990878811692, F=0.7886565590720774,
         omega=1.0444602350008463, R=0.32567657306994136, b=b, tau="grazing",
     )  # fmt: skip
-
-
-@pytest.mark.parametrize("factor", [0.4, 0.5, 0.7, 1.0])
-def test_a_birth_that_steps_went_over_is_seen(factor):
-    """Behind it lies the mirror image of the branch: the run went on there, over a fold that is not one."""
-    bounds = (6.0, 8.0)
-    parent = vs.continue_orbit(vs.periodic_orbit(mirrored_ball(7.0), itinerary="LR"), "b", bounds)
-    (birth,) = (special for special in parent.special if special.type == "pitchfork")
-    for orbit in vs.switch(birth):
-        found = types(follow(Case(orbit, "b", bounds), factor))
-        assert [kind for kind, _ in found] == ["graze", "pitchfork"]
-        assert abs(found[1][1] - birth.parameters["b"]) < 1e-12
 
 
 def test_where_halves_turn_round_is_counted():

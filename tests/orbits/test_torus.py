@@ -41,18 +41,6 @@ def test_coefficient_agrees_with_differences_of_the_map_in_50_digits(omega):
     assert special.criticality == ("super" if expected < 0 else "sub")
 
 
-def test_criticality_where_the_impact_is_slow():
-    """Rounding of its time once hid the sign: speed 5e-2 of omega times the clearance."""
-    system = vs.System(
-        mu_m=7.217826111600302, mu_k=0.4128955381592853, zeta=0.022, f2=0, omega=0.44440953779592013,
-        R=0.7404608367095735, b=0.028635072114428204, stops="left",
-    )  # fmt: skip
-    orbit = vs.periodic_orbit(system, itinerary="L")
-    branch = vs.continue_orbit(orbit, "zeta", (0.0208, 0.025))
-    point = next(s for s in branch.special if s.type == "neimark_sacker")
-    assert point.parameters["zeta"] == pytest.approx(0.021001901082175742, rel=1e-12) and point.criticality == "super"
-
-
 def test_circle_beyond_the_point_attracts(one_sided_branch):
     """Supercritical: beyond it, orbits that start nearer and farther come to one distance, like its square root."""
     special = one_sided_branch.special[1]

@@ -3,9 +3,6 @@
 import numpy as np
 from reference.saltation import expm, field, monodromy
 
-from vibro_sweep.analysis.continuation.starting_orbit import keeps_symmetry
-from vibro_sweep.model.linear import family_of
-
 NEAR = 1e-6  # distance of a multiplier from the unit circle within which it counts as on neither side
 MEETS = 1e-6  # distance of a critical multiplier from where it should be
 SAMPLES = 48  # of a flight
@@ -21,14 +18,16 @@ class Pieces:
 
     def __init__(self, branch, case):
         self.branch, self.case, points = branch, case, branch.points
-        self.symmetric = branch._start.sigma == -1
+        middle = branch.orbit(points.sizes["point"] // 2)  # at an end it may be that of another branch
+        self.symmetric = middle.symmetric
         self.values = points[case.name].values
         system = case.orbit.system
-        self.oscillators = [family_of(system.replace(**{case.name: float(value)})).linear for value in self.values]
+        self.oscillators = [system.replace(**{case.name: float(value)}).linear for value in self.values]
         t, v = points.impact_t.values, points.impact_v.values
         sides = points.impact_side.values[0].astype(int)
-        periods = branch._start.half_periods * np.pi / np.array([q.omega for q in self.oscillators])
-        self.sigma = branch._start.sigma
+        half_periods = middle.period * (1 if self.symmetric else 2)
+        periods = half_periods * np.pi / np.array([q.omega for q in self.oscillators])
+        self.sigma = -1 if self.symmetric else 1
         if self.symmetric:
             K = len(sides) // 2
             t, v, sides = t[:, :K], v[:, :K], sides[:K]
@@ -122,7 +121,7 @@ def _met(sets):
 
 def at_point(orbit):
     """(`MapOverPeriod`, q, t, sides, v, P) of a periodic orbit, over half the period if it is symmetric."""
-    q, impacts = family_of(orbit.system).linear, orbit.impacts
+    q, impacts = orbit.system.linear, orbit.impacts
     sigma = -1 if orbit.symmetric else 1
     K = len(impacts) // 2 if orbit.symmetric else len(impacts)
     period = orbit.period * (np.pi if orbit.symmetric else 2 * np.pi) / q.omega
@@ -228,7 +227,7 @@ def passing(pieces: Pieces) -> list[tuple[str, str]]:
 
 def free_passes(branch, case) -> list[tuple[str, str]]:
     """Places between the ends of a branch without impacts where the free motion is beyond a stop."""
-    if branch._start.K:
+    if branch.points.sizes.get("impact", 0):
         return []
     values = branch.points[case.name].values
     system = case.orbit.system
@@ -247,7 +246,7 @@ def free_passes(branch, case) -> list[tuple[str, str]]:
 
 def not_reduced(orbit, parameter) -> list[tuple[str, str]]:
     """Whether an orbit is a shorter one repeated, or symmetric, and does not say so."""
-    q, n = family_of(orbit.system).linear, orbit.period
+    q, n = orbit.system.linear, orbit.period
     T, found = 2 * np.pi / q.omega, []
     t = np.linspace(0, n * T, 41)[:-1] + 0.123
     x = orbit.sample(t)
@@ -255,7 +254,7 @@ def not_reduced(orbit, parameter) -> list[tuple[str, str]]:
     for part in [part for part in range(1, n) if n % part == 0]:
         if np.abs(orbit.sample(t + part * T) - x)[:, ::2].max() < 1e-9 * size:
             found.append(("period not reduced", f"{orbit.itinerary} of period {n} has {part}"))
-    mirrored = keeps_symmetry(family_of(orbit.system), parameter)  # else the branch is of orbits without it
+    mirrored = moved(orbit.system, parameter).linear.symmetric  # else the branch is of orbits without it
     if (
         mirrored
         and q.symmetric
@@ -265,3 +264,9 @@ def not_reduced(orbit, parameter) -> list[tuple[str, str]]:
     ):
         found.append(("symmetry not seen", f"{orbit.itinerary} of period {n}"))
     return found
+
+
+def moved(system, parameter: str):
+    """The oscillator with another value of a number, which is allowed."""
+    value = getattr(system, parameter)
+    return system.replace(**{parameter: 0.999 * value if value else 1e-3 * system.b})
