@@ -91,7 +91,7 @@ def altered(branch, **changes):
     )
 
 
-@pytest.mark.parametrize("name", ["x1", "v1", "x2", "v2"])
+@pytest.mark.parametrize("name", ["x1", "v1", "x2", "v2", "impact_v"])
 def test_a_point_that_is_no_orbit_is_seen(name):
     row = TABLE["one-sided orbit of the paper"]
     _, branch = followed(row["id"])

@@ -1,4 +1,4 @@
-"""Periodic orbits and branches of other oscillators than the paper's, against the engine's simulation."""
+"""Periodic orbits of other oscillators than the paper's, against the engine's simulation."""
 
 import numpy as np
 import pytest
@@ -19,13 +19,13 @@ LINKS = {"m": [1, 1, 2, 1], "k": [1, 2, 1, 1, 0.5], "c": [0.1] * 5, "force": [0,
 FOUR = named("chain", **LINKS, omega=0.9, R=0.7, b=0.4)
 DEAD = named("one_mass", zeta=0.05, F=1.0, constant=0.1, omega=0.4, R=0.0, b=0.3, offset=0.1, stops="both")
 CASES = {
-    "three masses, unequal stops": (THREE, "LLRR", "b", (0.5, 0.7)),
-    "three masses in R_left": (THREE.replace(b=0.7), "LLR", "R_left", (0.3, 0.7)),
-    "three masses in omega": (THREE.replace(b=0.8), "LR", "omega", (0.75, 0.9)),
-    "one mass": (ONE, "RR", "F", (0.8, 1.3)),
-    "ball in a cavity": (CAVITY, "LLLLRRRR", "b", (0.8, 1.2)),
-    "chain of four": (FOUR, "LLRR", "m3", (1.5, 2.5)),
-    "rests without restitution": (DEAD, "LR", "omega", (0.35, 0.45)),
+    "three masses, unequal stops": (THREE, "LLRR"),
+    "three masses with a larger gap": (THREE.replace(b=0.7), "LLR"),
+    "three masses with a symmetric orbit": (THREE.replace(b=0.8), "LR"),
+    "one mass": (ONE, "RR"),
+    "ball in a cavity": (CAVITY, "LLLLRRRR"),
+    "chain of four": (FOUR, "LLRR"),
+    "rests without restitution": (DEAD, "LR"),
 }
 
 
@@ -38,8 +38,8 @@ def settled(system):
 
 @pytest.mark.slow  # each number of masses compiles kernels of its own
 @pytest.mark.parametrize("name", CASES)
-def test_branch_against_simulation(name):
-    system, itinerary, parameter, bounds = CASES[name]
+def test_orbit_against_simulation(name):
+    system, itinerary = CASES[name]
     state, period = settled(system)
     orbit = vs.periodic_orbit(system, state=state, periods=period)
     assert (orbit.status, orbit.itinerary, orbit.stable) == ("ok", itinerary, True)
@@ -48,22 +48,6 @@ def test_branch_against_simulation(name):
     times = np.linspace(0, period * system.period, 200)
     assert np.abs(simulated.sample(times) - orbit.sample(times)).max() < 1e-10
     assert orbit.impacts.dtype == simulated.impacts.dtype
-    branch = vs.continue_orbit(orbit, parameter, bounds)
-    points = branch.points
-    assert points.sizes["point"] > 10 and not [s for s in branch.special if s.type == "failed"]
-    columns = [f"{kind}{i + 1}" for i in range(system.masses) for kind in "xv"]
-    for i in np.linspace(1, points.sizes["point"] - 2, 8).astype(int):
-        point = points.isel(point=i)
-        here = system.replace(**{parameter: float(point[parameter])})
-        start = np.array([float(point[column]) for column in columns])
-        largest = float(np.hypot(point.multiplier_re, point.multiplier_im).max())
-        try:
-            after = vs.simulate(here, start, period)
-        except ValueError:  # by rounding beyond the stop on which it rests
-            continue
-        assert np.abs(after.section[-1] - start).max() < 1e-9 * max(1, largest)
-        if not len(orbit.sticking):
-            assert np.sort(after.impacts["v1"]) == pytest.approx(np.sort(point.impact_v), abs=1e-9 * max(1, largest))
 
 
 @pytest.mark.slow
