@@ -1,17 +1,29 @@
 """Flights of any number of masses past a stop: no contact missed, none invented (tests/support/near_grazes.py)."""
 
+import numpy as np
 import pytest
 from numpy.random import default_rng
 from support import slow_cases
-from support.near_grazes import MASSES, judge, study
-from support.searching import searched
+from support.near_grazes import MASSES, judge
+
+BATCH = 4000  # flights drawn for an oscillator: some end behind a stop where they should begin
+
+
+def rows_of(masses: int, flights: int):
+    """What the judge has counted of at least so many flights of drawn oscillators."""
+    rng, rows, seed = default_rng(masses), 0, 0
+    while np.sum(rows) == 0 or rows[..., 0].sum() < flights:
+        seed += 1
+        rows = rows + judge(masses, seed, BATCH, rng)
+    return rows
 
 
 @pytest.mark.parametrize("masses", slow_cases(*MASSES))
 def test_none_missed_and_none_invented(masses):
-    counted, wrong = searched(study, range(MASSES.index(masses), 6 * len(MASSES), len(MASSES)))
-    assert wrong == [] and counted["decades without flights"] == 0
-    assert counted["flights"] > 8000 and counted["contacts"] > counted["flights"] / 2
+    """Among flights in every decade of distances from the stop."""
+    rows = rows_of(masses, 10_000)
+    assert rows[..., 3].sum() > 5_000 and (rows[..., 0] > 0).all()
+    assert rows[..., 1:3].sum() == 0
 
 
 @pytest.mark.slow
