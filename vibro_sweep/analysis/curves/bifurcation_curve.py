@@ -119,7 +119,7 @@ def bifurcation_curve(
     progress(points, (p, q)) is called now and then.
     virtual : whether the curve goes on where its orbit is not a motion any more; otherwise it ends there, at a point of
         codimension two
-    step : of the lengths of steps, a factor: shorter ones give more points
+    step : of the lengths of steps, a factor: shorter ones give more points; the first step is never lengthened
 
     Raises ValueError for a special point of another type, names that are not numbers of the system, bounds that do not
     hold the point, where the point does not belong to a single curve, and without virtual points where there is no
