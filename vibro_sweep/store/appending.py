@@ -31,7 +31,7 @@ class LockedPart:
         self.head: Head | None = None
         self._synced = -SYNC_SECONDS
 
-    def begin(self, head: Head, skeleton: bytes | memoryview) -> None:
+    def begin(self, head: Head, skeleton: bytes) -> None:
         """The head and the skeleton, in place of everything."""
         with said(self.path):
             self.file.truncate(0)

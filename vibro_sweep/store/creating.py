@@ -68,7 +68,7 @@ def ragged_run(subject: Subject, made_by: dict[str, Any], inputs: Collection[Pat
     return Run(subject, [], lambda file: set_texts(file, "sweep_dimensions", []), 0, inputs, made_by)
 
 
-def skeleton_of(run: Run, run_id: bytes) -> memoryview:
+def skeleton_of(run: Run, run_id: bytes) -> bytes:
     """The bytes of the HDF5 file of a run with nothing computed in it."""
     image, subject = io.BytesIO(), run.subject
     with h5py.File(image, "w", libver=LIBVER) as file:
@@ -85,7 +85,7 @@ def skeleton_of(run: Run, run_id: bytes) -> memoryview:
             set_value(file, name, value)
         run.create(file)
     seal(image)
-    return image.getbuffer()
+    return image.getvalue()  # not getbuffer(): collecting both as garbage crashes Python 3.12
 
 
 def seal(image: BinaryIO) -> None:

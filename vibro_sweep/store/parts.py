@@ -72,7 +72,7 @@ class Record(NamedTuple):
         return {name: np.fromfile(file, dtype, math.prod(shape)).reshape(shape) for name, dtype, shape in self.layout}
 
 
-def new_head(skeleton: bytes | memoryview, replaces: Stamp | None, run_id: bytes) -> Head:
+def new_head(skeleton: bytes, replaces: Stamp | None, run_id: bytes) -> Head:
     return Head(run_id, replaces, len(skeleton), zlib.crc32(skeleton))
 
 

@@ -135,7 +135,7 @@ class Writer:
                 raise
         if image is not new:
             seal(image)
-            new.write(image.getbuffer())
+            new.write(image.getvalue())
         return statuses
 
     def _fill(self, sink: Sink, index: Index, last: Callable[[h5py.File], None], how: dict) -> dict[int, int]:
