@@ -9,11 +9,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from support import ROOT, sample
-from support.explorers import answers, ask, decoded, explorer
+from support import ROOT
+from support.explorers import answers, ask, decoded, explorer, heights
+from support.scene_texts import parsed
 
 import vibro_sweep as vs
-from vibro_sweep.scene.scene import parse_scene
 
 pytest.importorskip("uvicorn")
 websockets = pytest.importorskip("websockets.sync.client")
@@ -45,49 +45,6 @@ def got(program, path="/", method="GET", **headers):
     connection.request(method, path, headers=headers)
     answer = connection.getresponse()
     return answer.status, answer.read(), dict(answer.getheaders())
-
-
-def heights(frames, columns, starts, record):
-    """What stands on the vertical axis, (columns, starts, record), of a periodic orbit the last points; float32."""
-    result, seen = np.full((columns, starts, record), np.nan, "f4"), np.zeros((columns, starts), int)
-    for words, arrays in frames:
-        if words["kind"] == "preview":
-            continue
-        here = len(arrays["count"]) // words["length"]
-        parts = np.split(arrays["y"], np.cumsum(arrays["count"])[:-1])
-        for n, part in enumerate(parts):
-            column, start = words["first"] + n // here * words["step"], words["first_start"] + n % here
-            result[column, start, record - len(part) :] = part
-            seen[column, start] += 1
-    assert (seen == 1).all()
-    return result
-
-
-@pytest.mark.parametrize(
-    "start", sample(1, [{}, {"random": 2, "seed": 7}, {"follow": "both"}]), ids=["rest", "random", "follow"]
-)
-def test_the_final_picture_has_the_bits_of_the_sweep(page, view, start):
-    view |= {"start": start, "low": 5.3, "high": 5.9}
-    frames = answers(page, "sweep", 2, view=view, middle=1.25)
-    scene = parse_scene(answers(page, "save", 3, view=view, form="yaml")[0]["text"])
-    data = vs.sweep(
-        scene.system, scene.sweep, start=start or None, transient=100, record=20, observe=["section", "lyapunov"]
-    )
-    whole = data["x1"].values.reshape(64, -1, 20)
-    expected = (whole - 1.25).astype("f4")
-    found = heights(frames, 64, whole.shape[1], 20)
-    period = data["period"].values.reshape(64, -1)
-    assert {*np.unique(period)} > {0}  # both kinds of orbits
-    shown = np.arange(20) >= 20 - np.where(period > 0, period, 20)[..., None]
-    assert np.array_equal(found[shown], expected[shown]) and np.isnan(found[~shown]).all()
-    assert frames[0][0]["kind"] == "preview" and frames[0][0]["exact"] is False
-    assert np.array_equal(frames[0][1]["axis"], scene.sweep["b"])
-    exponents = np.full((64, whole.shape[1], 4), np.nan, "f4")
-    for words, arrays in frames[1:]:
-        columns = words["first"] + words["step"] * np.arange(words["length"])
-        here = len(arrays["count"]) // words["length"]
-        exponents[columns, words["first_start"] : words["first_start"] + here] = arrays["lyapunov"].reshape(-1, here, 4)
-    assert np.array_equal(exponents, data["lyapunov"].values.reshape(64, -1, 4).astype("f4"))
 
 
 def test_only_the_newest_request_is_finished(page, view):
@@ -210,7 +167,7 @@ def test_a_number_that_follows_another_one(page, view):
 
 def test_a_saved_view_is_computed_again(page, view, tmp_path, monkeypatch):
     view |= {"numbers": {"R": 0.75}}
-    scene = parse_scene(answers(page, "save", 2, view=view, form="yaml")[0]["text"])
+    scene = parsed(answers(page, "save", 2, view=view, form="yaml")[0]["text"])
     assert scene.system.R == 0.75 and len(scene.sweep["b"]) == 64 and scene.transient == 100
     path = tmp_path / "explored.h5"
     path.write_bytes(answers(page, "save", 3, view=view, form="hdf5")[1]["data"].tobytes())

@@ -89,9 +89,8 @@ def test_basins_have_a_mark_at_each_attractor(basins):
         v1, x1 = np.argwhere(number == attractor)[0]
         mean = [basins.average.sel(averaged=name).values[v1, x1] for name in ("v1", "x1")]
         expected[(number == attractor).sum()] = mean
-    assert [found[marker] for marker in ("o", "s", "^")] == [
-        expected[count] for count in sorted(expected, reverse=True)
-    ]
+    largest_first = [expected[count] for count in sorted(expected, reverse=True)]
+    assert [found[marker] for marker in ("o", "s", "^")] == largest_first
     assert "mean of the section points" in fig.get_suptitle()
 
 

@@ -3,7 +3,7 @@
 import h5py
 import numpy as np
 import pytest
-from matplotlib.colors import to_hex
+from matplotlib.colors import Normalize, to_hex
 from support import slow_cases
 from support.figures import bars, entries, image, made, marked, overlaps, plane
 from support.oscillators import PAPER
@@ -146,7 +146,8 @@ def test_a_file_is_opened_twice_and_each_number_read_once(tmp_path, monkeypatch)
 @pytest.mark.slow
 def test_planes_relative_to_the_grazing_clearance():
     axes = {"b": np.linspace(3, 5, 5), "omega": np.linspace(0.6, 0.606, 4)}
-    fig = vs.plot(vs.sweep(PAPER, axes, transient=30, record=10, observe=["section"]), "plane", relative=True)
+    data = vs.sweep(PAPER, axes, transient=30, record=10, observe=["section"])
+    fig = vs.plot(data, "plane", relative=True)
     (mesh,) = fig.axes[0].collections
     x, y = mesh.get_coordinates().transpose(2, 0, 1)
     assert x.shape == (5, 6) and np.all(np.diff(y[:, 0]) > 0) and np.ptp(y, axis=1).max() == 0
@@ -154,6 +155,7 @@ def test_planes_relative_to_the_grazing_clearance():
     stars = [vs.grazing(PAPER.replace(omega=omega)).b for omega in axes["omega"]]
     assert middle == pytest.approx(axes["b"] / np.array(stars)[:, None], rel=1e-3)
     assert "outside of the sweep" in entries(fig)
+    assert not {"no number", "outside of the sweep"} & {*entries(vs.plot(data))}
 
 
 def test_what_is_drawn_of_a_plane_is_what_was_asked_for():
@@ -175,6 +177,18 @@ def test_numbers_of_impacts_that_span_decades():
     axes = {"b": np.arange(10.0), "R": np.linspace(0, 1, 12)}
     norm = image(vs.plot(made(axes, {"impacts_right": counts, "impacts_left": counts})).axes[0]).norm
     assert norm(100.0) == pytest.approx(np.log(50) / np.log(5000))
+
+
+@pytest.mark.parametrize(
+    "values, decades", [([1, 1, 1, 26], True), ([0, 1, 1, 1, 26], True), ([1, 2, 5], False), ([0, 0], False)]
+)
+def test_colours_of_numbers_that_span_decades(values, decades):
+    """The largest do not take all colours, also where some are zero; others have even colours."""
+    counts = np.tile(values, (2, 1))
+    axes = {"b": [1.0, 2.0], "R": np.linspace(0, 1, len(values))}
+    norm = image(vs.plot(made(axes, {"impacts_right": counts, "impacts_left": 0 * counts})).axes[0]).norm
+    assert (type(norm) is not Normalize) == decades
+    assert not decades or (norm(1.0) < norm(5.0) < norm(26.0) == 1 and norm(5.0) > 0.4)
 
 
 def test_rests_are_hatched_by_rows_of_cells():

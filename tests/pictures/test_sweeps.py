@@ -146,18 +146,28 @@ def test_a_density_of_a_part_has_the_cells_of_its_limits():
 
 
 def test_dots_of_a_part_are_those_of_the_data_and_larger_where_they_are_few():
-    sizes = []
-    for high in (2.5, 2.05):
-        (ax,) = vs.plot(many(), xlim=(2, high)).axes
-        points = dots(ax)
-        assert len(points) % 200 == 0 and points[:, 0].min() >= 2 and points[:, 0].max() <= high
-        sizes += [line.get_markersize() for line in ax.lines if line.get_linestyle() == "None"]
-    assert sizes[0] >= 1.2 and sizes[1] > 2.5
+    assert image(vs.plot(many()).axes[0])
+    parts = [{"xlim": (2, 2.5)}, {"ylim": (0.5, 0.52)}, {"xlim": (2, 5), "ylim": (0.1, 0.2)}, {"xlim": (2, 2.05)}]
+    for part, least in zip(parts, (1.2, 1.2, 1.2, 2.5), strict=True):
+        (ax,) = vs.plot(many(), **part).axes
+        (line,) = (line for line in ax.lines if line.get_linestyle() == "None")
+        assert not ax.images and line.get_markersize() >= least
+    x1 = many().x1.sel(b=slice(2, 2.5))
+    points = dots(vs.plot(many(), xlim=(2, 2.5)).axes[0])
+    np.testing.assert_array_equal(points, np.column_stack([np.repeat(x1.b, 200), np.ravel(x1)]))
+
+
+def test_dots_of_periodic_orbits_are_counted_once():
     x1, sizes = np.tile(np.random.default_rng(0).uniform(0, 1, (30, 4)), 50), []
-    for period in (4, 0):  # those of periodic orbits are counted once
+    for period in (4, 0):
         ax = vs.plot(made({"b": np.linspace(1, 2, 30)}, {"x1": x1, "period": np.full(30, period)})).axes[0]
         sizes += [line.get_markersize() for line in ax.lines if line.get_linestyle() == "None"]
     assert sizes[0] > 1.5 * sizes[1]
+
+
+def test_few_columns_of_many_points_are_a_density():
+    x1 = np.random.default_rng(0).uniform(0, 1, (6, 5000))
+    assert image(vs.plot(made({"b": np.arange(6.0)}, {"x1": x1})).axes[0]).get_array().shape[1] == 6
 
 
 def window(b, samples, first, last):
