@@ -66,7 +66,10 @@ def differences(fig, shows: dict) -> list[str]:
 @pytest.mark.filterwarnings("error", "ignore::DeprecationWarning")  # of the lowest matplotlib
 def test_a_figure_shows(row, tmp_path):
     if "scene" in row:
-        vs.run(parsed(row["scene"]), tmp_path / "data.h5")
+        scene = parsed(row["scene"])
+        assert row["kinds"][0] == scene.picture or row["id"] == "a plane of one point"
+        assert parsed(scene.to_yaml()).picture == scene.picture and scene.replace(picture=None).picture is None
+        vs.run(scene, tmp_path / "data.h5")
     given = eval(row["call"], NAMES | {"path": tmp_path / "data.h5"})
     if "kinds" in row:
         assert figures.kinds(given) == row["kinds"]

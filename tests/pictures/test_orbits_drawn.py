@@ -62,7 +62,10 @@ def test_what_is_drawn_of_an_orbit_is_the_variable_that_was_asked_for(name):
     assert (len(ax.lines) == 3) == (name == "x1")  # with both stops
     (ax,) = vs.plot(data, "iteration", variable=name).axes
     assert np.array_equal(dots(ax)[:, 1], data[name])
-    points = dots(vs.plot(golden()["orbits"], "bifurcation", variable=name).axes[0])
+    diagram = vs.plot(golden()["orbits"], "bifurcation", variable=name).axes[0]
+    assert diagram.get_ylabel() == f"${name[0]}_{name[1]}$ at $t = 0$ mod $T$"
+    assert bool(marked(diagram, "stop")) == (name == "x1")
+    points = dots(diagram)
     assert np.array_equal(points[points[:, 0] == 4.9, 1], data[name])
 
 
@@ -86,12 +89,22 @@ def test_the_nearest_point_of_a_sweep_is_drawn():
     assert np.array_equal(dots(ax)[:, 1], data.x1[3]) and f"{float(data.b[3]):.6g}" in ax.get_title()
     assert vs.plot(golden()["orbits"], at={"b": 4.9}).get_suptitle().startswith("Phase portrait")
     plane = golden()["plane"]
-    assert len(vs.plot(plane, "iteration", at={"b": float(plane.b[1])}).axes) > 1
+    orbits = min(4, plane.sizes["omega"])
+    assert len(vs.plot(plane, "iteration", at={"b": float(plane.b[1])}).axes) == orbits > 1
     both = {"b": float(plane.b[1]), "omega": float(plane.omega[2])}
     (ax,) = vs.plot(plane, "iteration", at=both).axes
     assert np.array_equal(dots(ax)[:, 1], plane.x1.sel(both))
     assert len(vs.plot(golden()["orbits"].isel(b=slice(1, 3)), "history").axes) == 2
     assert "b = 4.9" in vs.plot(golden()["orbits"].sel(b=4.9), "history").get_suptitle()
+
+
+def test_what_has_no_picture_says_so():
+    with pytest.raises(vs.PlotError, match="allowed: nothing, it is one point"):
+        vs.plot(golden()["one orbit"], at={"b": 6.6})
+    with pytest.raises(vs.PlotError, match="no point is computed"):
+        vs.plot(made({"b": [1.0, 2.0, 3.0]}, {"x1": np.full((3, 2), np.nan)}, done=np.zeros(3, bool)))
+    with pytest.raises(vs.PlotError, match="lyapunov, status"):
+        vs.plot(made({}, {"lyapunov": np.zeros(4)}))
 
 
 def test_iteration_of_a_fixed_point_does_not_show_rounding():

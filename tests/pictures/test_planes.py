@@ -117,6 +117,8 @@ def test_cells_of_a_part_keep_the_borders_that_they_have_in_the_whole():
     """Also where there is one of them."""
     data = made({"b": np.array([1.0, 2.0, 4.0, 8.0]), "R": [0.1, 0.2]}, {"period": np.ones((4, 2), int)})
     assert image(vs.plot(data, xlim=(1.6, 2.9)).axes[0]).get_extent()[:2] == (1.5, 3.0)
+    alone = made({"b": [1.0, 2.0, 4.0], "R": [0.0]}, {"period": np.ones((3, 1), int)})
+    assert np.ravel(image(vs.plot(alone).axes[0]).get_extent())[2:] == pytest.approx((-0.5, 0.5))
 
 
 @pytest.mark.slow

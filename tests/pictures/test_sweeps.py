@@ -5,7 +5,7 @@ import itertools
 import numpy as np
 import pytest
 from matplotlib.colors import LogNorm
-from support.figures import dots, entries, exponents, image, made, many, marked, swept
+from support.figures import dots, entries, exponents, golden, image, made, many, marked, swept
 
 import vibro_sweep as vs
 
@@ -135,6 +135,22 @@ def test_a_density_counts_all_points_where_they_are():
     np.add.at(expected, (rows[there].astype(int), np.repeat(np.arange(1000), 120).reshape(x1.shape)[there]), 1)
     assert expected.sum() == 2999 * 40 and (cells != expected).sum() < 20  # but for points on the border of a cell
     np.testing.assert_array_equal(cells.sum(axis=0), expected.sum(axis=0))
+
+
+def test_limits_are_those_asked_for():
+    """And what is left to the picture fits what is in view."""
+    data = swept()
+    section, spectrum, impacts = vs.plot(data, xlim=(6.55, 6.65), ylim=(6, 6.5)).axes
+    assert section.get_xlim() == impacts.get_xlim() == (6.55, 6.65) and section.get_ylim() == (6, 6.5)
+    b = data.b.values
+    assert {*dots(section)[:, 0]} == {*b[(b >= 6.55) & (b <= 6.65)]}
+    lost = data.lyapunov.where(data.b < 6.8, 1000)  # beyond the limits
+    spectrum = vs.plot(data.assign(lyapunov=lost), xlim=(6.55, 6.65)).axes[1]
+    assert -0.2 < spectrum.get_ylim()[0] < spectrum.get_ylim()[1] < 1
+    portraits = vs.plot(golden()["orbits"], "phase-portrait", xlim=(0, 7), ylim=(-1, 2)).axes
+    assert [(ax.get_xlim(), ax.get_ylim()) for ax in portraits if ax.lines] == [((0, 7), (-1, 2))] * 3
+    low, high = vs.plot(made({"b": [1.0, 2.0, 3.0]}, {"x1": [[np.nan], [1.0], [3.0]]})).axes[0].get_ylim()
+    assert low < 1 and 3 < high < 3.2
 
 
 def test_a_density_of_a_part_has_the_cells_of_its_limits():

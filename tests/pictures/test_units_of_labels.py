@@ -207,3 +207,13 @@ def test_functions():
 def test_they_are_in_the_text_of_a_scene():
     data = vs.sweep(PHYSICAL, {"b": [2.0, 2.1]}, observe=["section"], transient=0, record=1)
     assert "units: [2, 0.005, 0.03162277660168379]" in data.attrs["scene"] and "units" not in data.attrs
+
+
+@pytest.mark.slow
+def test_limits_of_a_frequency_are_said_in_hertz_too():
+    system = vs.Oscillator.named("one_mass", zeta=0.1, F=1, omega=6, R=0.5, b=1, units="SI")
+    data = vs.sweep(system, {"omega": [2 * np.pi, 4 * np.pi]}, transient=2, record=2)
+    with pytest.raises(vs.PlotError, match=r"has omega from 6.28319 to 12.5664 \[rad/s\], which is 1 to 2 Hz"):
+        vs.plot(data, xlim=(1, 2))
+    with pytest.raises(vs.PlotError, match=r"'Hz' is not swept; allowed: omega \[rad/s\]"):
+        vs.plot(data, "iteration", at={"Hz": 1})
