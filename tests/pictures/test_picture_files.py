@@ -164,7 +164,9 @@ def test_names_of_pictures(folder, tmp_path):
     assert main(["plot", "../x.h5", "-o", "all.svg", "--kind", "all"]) == 0
     assert main(["plot", "../x.h5", "-o", "at.svg", "--kind", "all", "--at", "b=6.6"]) == 0
     text = (folder / "scene.yaml").read_text().partition("\nsweep:")[0]
-    vs.run(parsed(f"{text}\norbit: {{transient: 5, record: 5}}\ntrajectory: {{periods: 2, samples: 41}}"), "../motion.h5")
+    vs.run(
+        parsed(f"{text}\norbit: {{transient: 5, record: 5}}\ntrajectory: {{periods: 2, samples: 41}}"), "../motion.h5"
+    )
     assert main(["plot", "../motion.h5", "-o", "motion.svg", "--kind", "all"]) == 0
     kinds = {
         "all": ("bifurcation", "lyapunov", "impacts", "iteration", "poincare"),
