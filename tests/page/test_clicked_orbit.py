@@ -4,7 +4,7 @@ import json
 
 import numpy as np
 import pytest
-from support.explorers import answers, explorer
+from support.explorers import answers
 
 pytest.importorskip("uvicorn")
 
@@ -13,15 +13,6 @@ SYSTEM = {
     "k_stop": 10, "c_stop": 12, "release": "force",
 }  # fmt: skip
 VIEW = {"system": SYSTEM, "axis": "b", "low": 0.1, "high": 0.2, "columns": 16, "transient": 1000, "record": 60}
-
-
-@pytest.fixture(scope="module")
-def page():
-    with explorer() as program:
-        with program.socket() as socket:
-            yield socket
-        status, errors = program.end()
-    assert status == 0 and "Traceback" not in errors and "warning" not in errors.lower(), errors
 
 
 def test_an_orbit_goes_on_where_its_stops_relax(page):
