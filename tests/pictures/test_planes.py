@@ -182,7 +182,7 @@ def test_numbers_of_impacts_that_span_decades():
 
 
 @pytest.mark.parametrize(
-    "values, decades", [([1, 1, 1, 26], True), ([0, 1, 1, 1, 26], True), ([1, 2, 5], False), ([0, 0], False)]
+    "values, decades", [([1, 1, 1, 26], True), ([0, 1, 1, 1, 26, np.nan], True), ([1, 2, 5], False), ([0, 0], False)]
 )
 def test_colours_of_numbers_that_span_decades(values, decades):
     """The largest do not take all colours, also where some are zero; others have even colours."""
