@@ -20,7 +20,6 @@ from support.branches import one_sided_branch, symmetric_branch  # noqa: E402, F
 from support.cli import scene_folder  # noqa: E402, F401
 from support.files import files, folder  # noqa: E402, F401
 from support.kinds_of_files import kinds  # noqa: E402, F401
-from support.pictures import branches, plane, sweep, trajectory  # noqa: E402, F401
 
 # Programs that tests start import the package that is tested, and not one in the current folder.
 os.environ["PYTHONSAFEPATH"] = "1"

@@ -1,121 +1,106 @@
-"""Frames of a sweep (`live/frames.py`): put together they are what `vibro_sweep.sweep` computes, bit for bit."""
+"""Frames of a diagram: a preview of shorter orbits, then pieces; together these are what `vibro_sweep.sweep` computes,
+bit for bit."""
 
 import numpy as np
 import pytest
-from support import slow_cases
-from support.models import PAPER, oscillator
+from support import ROOT, sample
+from support.explorers import answers, explorer, heights
+from support.scene_texts import parsed
 
 import vibro_sweep as vs
-from vibro_sweep.driver.block_columns import columns_of, draft_of, whole_block
-from vibro_sweep.driver.compute import compute
-from vibro_sweep.live.frames import Preview, frames
-from vibro_sweep.live.pace import Pace
-from vibro_sweep.scene import scene_of as scene_of_data
-from vibro_sweep.scene.written import changed
 
-SYSTEM = vs.System(**PAPER)
-B = {"b": np.linspace(6.2, 6.8, 96)}
+pytest.importorskip("uvicorn")
+
+SYSTEM = vs.load_scene(ROOT / "configs" / "quickstart.yaml").system
+ONE_MASS = {"type": "one_mass", "zeta": 0.02, "F": 0.35, "omega": 0.8, "R": 0.9, "b": 1, "stops": "right"}
 
 
-def scene_of(system=SYSTEM, sweep=B, **changes):
-    base = {"transient": 60, "record": 20, "observe": ["section", "lyapunov", "impacts"]}
-    return scene_of_data(changed({}, base | {"system": system, "sweep": sweep} | changes), "sweep")
+@pytest.fixture
+def page():
+    """Of a program that has no pace yet: nothing that it computed before says how long a piece takes."""
+    with explorer() as program, program.socket() as socket:
+        yield socket
 
 
-def swept(scene):
-    """The same by the driver and its file."""
-    start = scene.start if scene.start.kind != "state" else None
-    return vs.sweep(
-        scene.system, scene.sweep, observe=scene.observe, start=start, transient=scene.transient, record=scene.record
-    )
+@pytest.fixture
+def view(page):
+    return answers(page, "open", 1)[0]["view"] | {"transient": 60, "record": 10, "low": 6.2, "high": 6.8}
 
 
-def put_together(scene, found):
-    data = swept(scene)
-    result = {name: np.full(data[name].shape, -99, data[name].dtype) for name in found[-1].arrays}
-    for frame in found:
-        if frame.kind == "piece":
-            for name, values in frame.arrays.items():
-                result[name][frame.box] = values
-    return result, data
+def put_together(pieces, name, like):
+    """Numbers of all columns and starts, of the shape of `like`."""
+    result = np.full_like(like, -99)
+    for words, arrays in pieces:
+        columns = words["first"] + words["step"] * np.arange(words["length"])
+        here = len(arrays["count"]) // words["length"]
+        part = arrays[name].reshape(len(columns), here, *like.shape[2:])
+        result[columns, words["first_start"] : words["first_start"] + here] = part
+    return result
 
 
-@pytest.mark.parametrize(
-    "changes",
-    [
-        {},
-        *slow_cases(
-            {"start": {"random": 3, "seed": 5}},
-            {"start": {"follow": "both"}},
-            {"sweep": {"R": np.linspace(0.5, 0.9, 40)}},
-            {"start": {"follow": "up"}},
-            {"start": {"follow": "down"}},
-            {"system": oscillator("one_mass"), "sweep": {"F": np.linspace(0.3, 0.6, 33)}, "start": {"random": 2}},
-        ),
-    ],
-    ids=["b", "random", "both", "R", "up", "down", "one_mass"],
-)
-def test_pieces_have_the_bits_of_the_sweep(changes):
-    scene = scene_of(**changes)
-    pace = Pace()
-    for seconds in (0.01, 1e-4):  # the second time in other pieces
-        found = [*frames(scene, pace=pace, seconds=seconds)]
-        assert [frame.kind for frame in found] == ["preview"] + ["piece"] * (len(found) - 1)
-        assert [frame.last for frame in found] == [False] * (len(found) - 1) + [True]
-        result, data = put_together(scene, found)
-        for name, values in result.items():
-            assert np.array_equal(values, data[name], equal_nan=values.dtype.kind == "f"), name
-        assert {"x1", "lyapunov", "status", "period", "impacts_right"} <= result.keys()
-
-
-def test_pieces_are_interlaced_and_complete():
-    boxes = [frame.box[0] for frame in frames(scene_of(), preview=None)]
-    assert [box.start for box in boxes] == [0, 2, 1, 3] and {box.step for box in boxes} == {4}
-    every = np.concatenate([np.arange(96)[box] for box in boxes])
-    assert np.array_equal(np.sort(every), np.arange(96))
-
-
-def test_a_preview_has_values_of_the_sweep_and_shorter_orbits():
-    scene = scene_of()
-    first = next(frames(scene, variables=["v1", "lyapunov"], preview=Preview(columns=24, transient=60, record=10)))
-    assert first.kind == "preview" and first.exact is False and first.box == (slice(0, 96, 4),)
-    assert first.arrays.keys() == {"v1", "status"} and first.arrays["v1"].shape == (24, 10)
-    alone = vs.sweep(SYSTEM, {"b": B["b"][::4]}, observe=["section"], transient=60, record=10)
-    assert np.array_equal(first.arrays["v1"], alone["v1"])
-
-
-def test_a_preview_is_reduced_to_its_time():
-    pace, scene = Pace(), scene_of(sweep={"b": np.linspace(6.2, 6.8, 1000)})
-    block = whole_block(scene, ["x1"])
-    pace.measured(block, 100, 0.101)
-    assert pace.step(block, 250, 0.126) == 8 and pace.step(block, 250, 1.0) == 4
-    assert pace.step(block, 250, 0.002) == 16  # never fewer than 64 columns
-    assert pace.pieces(block, 0.25) == 4 and pace.pieces(block, 1e-9) == 32
-    other = whole_block(scene_of(transient=61), ["x1"])
-    assert pace.step(other, 250, 0.002) == 1
-
-
-def test_parts_of_parts_and_drafts():
-    block = whole_block(scene_of(start={"random": 2, "seed": 3}), ["x1", "v2", "status"])
-    box, whole = compute(block)
-    assert box == (slice(0, 96),)
-    part = columns_of(columns_of(block, slice(1, None, 3)), slice(2, 9, 2))
-    box, arrays = compute(part)
-    assert np.array_equal(np.arange(96)[box], np.arange(96)[1::3][2:9:2])
-    for name, values in arrays.items():
-        assert np.array_equal(values, whole[name][box], equal_nan=True)
-    _, draft = compute(draft_of(block, 60, 20, ["x1"]))
-    assert np.array_equal(draft["x1"], whole["x1"])  # exponents change no orbit
+@pytest.mark.parametrize("changes", sample(3, [
+    {},
+    {"start": {"follow": "up"}},
+    {"start": {"random": 2, "seed": 7}},
+    {"start": {"follow": "down"}},
+    {"start": {"follow": "both"}},
+    {"axis": "R", "low": 0.5, "high": 0.9},
+    {"system": ONE_MASS, "axis": "F", "low": 0.3, "high": 0.6, "start": {"random": 2}},
+]), ids=["rest", "up", "random", "down", "both", "R", "one_mass"])  # fmt: skip
+def test_the_final_picture_has_the_bits_of_the_sweep(page, view, changes):
+    view |= {"columns": 64, "transient": 100, "record": 20, "low": 5.3, "high": 5.9} | changes
+    scene = parsed(answers(page, "save", 2, view=view, form="yaml")[0]["text"])
+    options = {"start": view["start"] or None, "transient": 100, "record": 20}
+    data = vs.sweep(scene.system, scene.sweep, observe=["section", "lyapunov"], **options)
+    whole = data["x1"].values.reshape(64, -1, 20)
+    period = data["period"].values.reshape(64, -1)
+    assert {*np.unique(period)} > {0} or "axis" in changes  # both kinds of orbits
+    expected, shown = (whole - 1.25).astype("f4"), np.arange(20) >= 20 - np.where(period > 0, period, 20)[..., None]
+    for seq in (3, 4):  # the second time in other pieces
+        preview, *pieces = frames = answers(page, "sweep", seq, view=view, middle=1.25)
+        assert preview[0]["kind"] == "preview" and preview[0]["exact"] is False
+        assert np.array_equal(preview[1]["axis"], scene.sweep[view["axis"]])
+        found = heights(frames, *expected.shape)
+        assert np.array_equal(found[shown], expected[shown]) and np.isnan(found[~shown]).all()
+        for name in ("status", "period"):
+            values = data[name].values.reshape(64, -1)
+            assert np.array_equal(put_together(pieces, name, values), values), name
+        for name in ("lyapunov", "lyapunov_error"):
+            values = data[name].values.reshape(*period.shape, -1).astype("f4")
+            assert np.array_equal(put_together(pieces, name, values), values, equal_nan=True), name
 
 
 @pytest.mark.parametrize(
-    "scene, more, words",
-    [
-        (scene_of(sweep={"b": np.array([6.2, 6.3]), "R": np.array([0.5, 0.6])}), {}, "scene.sweep"),
-        (scene_of(observe=["attractors"], start={"random": 2}), {}, "scene.observe"),
-        (scene_of(), {"variables": ["x3"]}, "variables"),
-    ],
+    "columns, order",
+    [(33, [0, 1]), (96, [0, 2, 1, 3]), (1000, [0, 8, 4, 12, 2, 10, 6, 14, 1, 9, 5, 13, 3, 11, 7, 15])],
 )
-def test_what_has_no_frames_is_refused_at_once(scene, more, words):
-    with pytest.raises(ValueError, match=words):
-        frames(scene, **more)
+def test_pieces_are_interlaced_and_complete(page, view, columns, order):
+    """Each makes the picture finer everywhere."""
+    preview, *pieces = (words for words, _ in answers(page, "sweep", 2, view=view | {"columns": columns}))
+    assert preview["kind"] == "preview" and not preview["last"] and {words["kind"] for words in pieces} == {"piece"}
+    assert [words["first"] for words in pieces] == order and {words["step"] for words in pieces} == {len(order)}
+    assert [words["last"] for words in pieces] == [False] * (len(order) - 1) + [True]
+    every = np.concatenate([words["first"] + words["step"] * np.arange(words["length"]) for words in pieces])
+    assert np.array_equal(np.sort(every), np.arange(columns))
+
+
+@pytest.mark.parametrize("transient, record", [(60, 10), (1000, 200)])
+def test_a_preview_has_values_of_the_sweep_and_shorter_orbits(page, view, transient, record):
+    view |= {"columns": 1000, "transient": transient, "record": record, "y": "v1"}
+    words, arrays = answers(page, "sweep", 2, view=view)[0]
+    place = {name: words[name] for name in ("kind", "exact", "first", "step", "length")}
+    assert place == {"kind": "preview", "exact": False, "first": 0, "step": 4, "length": 250}
+    assert arrays.keys() == {"axis", "status", "count", "y"}
+    shorter = {"transient": min(transient, 300), "record": min(record, 50)}
+    alone = vs.sweep(SYSTEM, {"b": arrays["axis"][::4]}, observe=["section"], **shorter)
+    assert np.array_equal(arrays["y"], alone["v1"].values.ravel().astype("f4"))
+
+
+def test_a_preview_is_reduced_to_its_time(page, view):
+    """By how long the last of this kind took; never to fewer than 64 columns, or 63 of a step that is whole."""
+    view |= {"columns": 1000, "transient": 300, "record": 50, "start": {"random": 16}}
+    first, second = (answers(page, "sweep", seq, view=view) for seq in (2, 3))
+    assert first[0][0]["step"] == 4 < second[0][0]["step"] <= 16 and second[0][0]["length"] >= 63
+    assert len(first) - 1 == 16 and len(second) - 1 in (1, 2, 4, 8, 16, 32, 64)
+    other = answers(page, "sweep", 4, view=view | {"transient": 299})
+    assert other[0][0]["step"] == 4 and len(other) - 1 == 16

@@ -1,93 +1,18 @@
-"""`vibro-sweep explore` as a page meets it: what it answers, whom it refuses, and that nothing stops it."""
+"""What `vibro-sweep explore` answers a page."""
 
-import http.client
 import json
-import socket
-import time
-from contextlib import ExitStack
 from pathlib import Path
 
 import numpy as np
 import pytest
-from support import ROOT, sample
-from support.explorers import answers, ask, decoded, explorer
+from support import ROOT
+from support.explorers import answers, ask, decoded, explorer, heights
+from support.scene_texts import parsed
 
 import vibro_sweep as vs
-from vibro_sweep.scene.scene import parse_scene
 
 pytest.importorskip("uvicorn")
-websockets = pytest.importorskip("websockets.sync.client")
-
-from websockets.exceptions import ConnectionClosed, InvalidStatus  # noqa: E402
-
-
-@pytest.fixture(scope="module")
-def program():
-    with explorer() as running:
-        yield running
-        status, errors = running.end()
-    assert status == 0 and "Traceback" not in errors and "warning" not in errors, errors
-
-
-@pytest.fixture
-def page(program):
-    with program.socket() as socket:
-        yield socket
-
-
-@pytest.fixture
-def view(page):
-    return answers(page, "open", 1)[0]["view"] | {"columns": 64, "transient": 100, "record": 20}
-
-
-def got(program, path="/", method="GET", **headers):
-    connection = http.client.HTTPConnection(program.host, timeout=10)
-    connection.request(method, path, headers=headers)
-    answer = connection.getresponse()
-    return answer.status, answer.read(), dict(answer.getheaders())
-
-
-def heights(frames, columns, starts, record):
-    """What stands on the vertical axis, (columns, starts, record), of a periodic orbit the last points; float32."""
-    result, seen = np.full((columns, starts, record), np.nan, "f4"), np.zeros((columns, starts), int)
-    for words, arrays in frames:
-        if words["kind"] == "preview":
-            continue
-        here = len(arrays["count"]) // words["length"]
-        parts = np.split(arrays["y"], np.cumsum(arrays["count"])[:-1])
-        for n, part in enumerate(parts):
-            column, start = words["first"] + n // here * words["step"], words["first_start"] + n % here
-            result[column, start, record - len(part) :] = part
-            seen[column, start] += 1
-    assert (seen == 1).all()
-    return result
-
-
-@pytest.mark.parametrize(
-    "start", sample(1, [{}, {"random": 2, "seed": 7}, {"follow": "both"}]), ids=["rest", "random", "follow"]
-)
-def test_the_final_picture_has_the_bits_of_the_sweep(page, view, start):
-    view |= {"start": start, "low": 5.3, "high": 5.9}
-    frames = answers(page, "sweep", 2, view=view, middle=1.25)
-    scene = parse_scene(answers(page, "save", 3, view=view, form="yaml")[0]["text"])
-    data = vs.sweep(
-        scene.system, scene.sweep, start=start or None, transient=100, record=20, observe=["section", "lyapunov"]
-    )
-    whole = data["x1"].values.reshape(64, -1, 20)
-    expected = (whole - 1.25).astype("f4")
-    found = heights(frames, 64, whole.shape[1], 20)
-    period = data["period"].values.reshape(64, -1)
-    assert {*np.unique(period)} > {0}  # both kinds of orbits
-    shown = np.arange(20) >= 20 - np.where(period > 0, period, 20)[..., None]
-    assert np.array_equal(found[shown], expected[shown]) and np.isnan(found[~shown]).all()
-    assert frames[0][0]["kind"] == "preview" and frames[0][0]["exact"] is False
-    assert np.array_equal(frames[0][1]["axis"], scene.sweep["b"])
-    exponents = np.full((64, whole.shape[1], 4), np.nan, "f4")
-    for words, arrays in frames[1:]:
-        columns = words["first"] + words["step"] * np.arange(words["length"])
-        here = len(arrays["count"]) // words["length"]
-        exponents[columns, words["first_start"] : words["first_start"] + here] = arrays["lyapunov"].reshape(-1, here, 4)
-    assert np.array_equal(exponents, data["lyapunov"].values.reshape(64, -1, 4).astype("f4"))
+pytest.importorskip("websockets.sync.client")
 
 
 def test_only_the_newest_request_is_finished(page, view):
@@ -210,7 +135,7 @@ def test_a_number_that_follows_another_one(page, view):
 
 def test_a_saved_view_is_computed_again(page, view, tmp_path, monkeypatch):
     view |= {"numbers": {"R": 0.75}}
-    scene = parse_scene(answers(page, "save", 2, view=view, form="yaml")[0]["text"])
+    scene = parsed(answers(page, "save", 2, view=view, form="yaml")[0]["text"])
     assert scene.system.R == 0.75 and len(scene.sweep["b"]) == 64 and scene.transient == 100
     path = tmp_path / "explored.h5"
     path.write_bytes(answers(page, "save", 3, view=view, form="hdf5")[1]["data"].tobytes())
@@ -223,116 +148,6 @@ def test_a_saved_view_is_computed_again(page, view, tmp_path, monkeypatch):
     assert Path("explored.png").stat().st_size > 10_000
     picture = answers(page, "save", 5, view=view, form="svg")[1]["data"].tobytes()
     assert b"<svg" in picture and b"clearance" in picture
-
-
-@pytest.mark.parametrize(
-    "headers, path",
-    [({}, "/"), ({}, "/?token=wrong"), ({"Host": "example.org"}, None), ({"Host": "127.0.0.1.example.org"}, None)],
-)
-def test_a_page_is_given_to_those_who_know_the_token_and_name_this_machine(program, headers, path):
-    status, body, _ = got(program, path or f"/?token={program.token}", **headers)
-    assert status == 403 and b"<html" not in body
-
-
-def test_the_page_and_its_policy(program):
-    for host in ("localhost:1234", program.host):
-        status, body, headers = got(program, f"/?token={program.token}", Host=host)
-        assert status == 200 and b"main.js" in body
-    policy = headers["content-security-policy"]
-    assert "default-src 'none'" in policy and "unsafe" not in policy and headers["referrer-policy"] == "no-referrer"
-    assert program.token.encode() not in body and b"http" not in got(program, "/main.js")[1]
-    for path in ("/../server.py", "/..%2fserver.py", "/page/main.js", "/etc/passwd"):
-        assert got(program, path)[0] == 404
-    assert got(program, f"/?token={program.token}", "POST")[0] == 405
-    for path in (f"/?token={program.token}", "/main.js"):
-        assert got(program, path, Origin="http://example.org")[0] == 403
-        assert got(program, path, Origin=f"http://{program.host}")[0] == 200
-
-
-@pytest.mark.parametrize(
-    "options",
-    [
-        {"token": "wrong"},
-        {"token": ""},
-        {"origin": "http://example.org"},
-        {"origin": None},
-    ],
-)
-def test_sockets_of_others_are_refused(program, options):
-    with pytest.raises(InvalidStatus) as refused, program.socket(**options):
-        pass
-    assert refused.value.response.status_code == 403
-
-
-def test_a_socket_to_another_name_of_this_machine_is_refused(program):
-    upgrade = {"Connection": "Upgrade", "Upgrade": "websocket", "Sec-WebSocket-Version": "13"}
-    upgrade |= {"Sec-WebSocket-Key": "dGhlIHNhbXBsZSBub25jZQ==", "Origin": "http://example.org", "Host": "example.org"}
-    assert got(program, f"/socket?token={program.token}", **upgrade)[0] == 403
-
-
-def test_it_listens_on_this_machine_alone(program):
-    rows = [line.split() for file in ("tcp", "tcp6") for line in Path("/proc/net", file).read_text().splitlines()[1:]]
-    local = [row[1].split(":") for row in rows if row[3] == "0A"]
-    assert [place for place, port in local if int(port, 16) == program.port] == ["0100007F"]
-
-
-@pytest.mark.parametrize(
-    "message, code",
-    [
-        ("x" * 20_000, 1009),
-        ("[" * 10_000, 1008),
-        ("no JSON", 1008),
-        ('{"type": "sweep", "seq": 1}', 1008),
-        ('{"type": "open", "seq": NaN}', 1008),
-        ('{"type": "open", "seq": 1, "path": "/etc/passwd"}', 1008),
-        (b"\x00\x01", 1008),
-    ],
-    ids=range(7),
-)
-def test_what_is_no_request_closes_the_socket(program, message, code):
-    with program.socket() as socket:
-        socket.send(message)
-        with pytest.raises(ConnectionClosed) as closed:
-            socket.recv(timeout=10)
-        assert closed.value.rcvd.code == code
-
-
-def test_sizes_are_bounded(program, view):
-    for key, value in {"columns": 10**6, "record": 10**9, "low": "x", "numbers": {"R": None}}.items():
-        with program.socket() as socket:
-            ask(socket, "sweep", 1, view=view | {key: value})
-            with pytest.raises(ConnectionClosed) as closed:
-                socket.recv(timeout=10)
-            assert closed.value.rcvd.code == 1008
-
-
-def memory(program):
-    status = Path("/proc", str(program.process.pid), "status").read_text()
-    return int(status.partition("VmRSS:")[2].split()[0]) / 1000  # MB
-
-
-@pytest.mark.slow
-def test_a_page_that_does_not_read_costs_others_nothing(program, page, view):
-    answers(page, "sweep", 2, view=view)
-    before = memory(program)
-    large = view | {"columns": 1000, "transient": 10, "record": 1000, "low": 4.4, "high": 4.6}
-    with program.socket(max_queue=1, close_timeout=0.1) as silent:  # closing, it would wait for what it does not read
-        for seq in range(1000):
-            ask(silent, "sweep", seq, view=large)
-        time.sleep(1)
-        began = time.perf_counter()
-        answers(page, "sweep", 3, view=view)
-        assert time.perf_counter() - began < 2
-        assert memory(program) - before < 150
-
-
-def test_there_are_at_most_so_many_pages(program):
-    with ExitStack() as stack:
-        sockets = [stack.enter_context(program.socket()) for _ in range(16)]
-        with program.socket() as one, pytest.raises(ConnectionClosed) as closed:
-            one.recv(timeout=10)
-        assert closed.value.rcvd.code == 1013
-        assert answers(sockets[-1], "open", 1)[0]["type"] == "model"
 
 
 def test_every_example_is_drawn(program):
@@ -357,18 +172,3 @@ def test_the_scene_of_a_file_comes_first(tmp_path):
         assert words["name"] == "mine" and words["view"]["axis"] == "omega" and words["view"]["system"]["R"] == 0.6
         assert json.loads(json.dumps(words["view"])) == words["view"]
         assert running.end()[0] == 0
-
-
-@pytest.mark.slow
-def test_a_thousand_connections(program, page, view):
-    """Those that say nothing take little memory, those without a token get 403, and a page is answered beside them."""
-    before = memory(program)
-    with ExitStack() as stack:
-        silent = [stack.enter_context(socket.create_connection(("127.0.0.1", program.port))) for _ in range(1000)]
-        silent[0].sendall(b"GET / HTTP/1.1\r\n")  # and no more
-        assert answers(page, "sweep", 2, view=view)[-1][0]["last"]
-        assert memory(program) < before + 100
-        for one in silent[1:]:
-            one.sendall(b"GET /socket HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n")
-        assert all(one.recv(64).startswith(b"HTTP/1.1 40") for one in silent[1:])
-        assert answers(page, "sweep", 3, view=view)[-1][0]["last"]

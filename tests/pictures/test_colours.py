@@ -1,13 +1,14 @@
 """Colours that stand side by side in a legend are distinct to readers with any colour vision."""
 
 import itertools
+from functools import cache
 
 import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
+from support.figures import bouncing, chart, circle, golden, image, made, marked, plane, swept
 
-from vibro_sweep.model.outcomes import REASONS
-from vibro_sweep.plotting import drawn_curves, families, strip, style
+import vibro_sweep as vs
 
 # Machado, Oliveira, Fernandes, IEEE Trans. Vis. Comput. Graph. 15 (2009) 1291, table 1: severity 1.0, on linear sRGB
 VISIONS = {
@@ -27,24 +28,98 @@ XYZ = np.array(
     [[0.4124564, 0.3575761, 0.1804375], [0.2126729, 0.7151522, 0.0721750], [0.0193339, 0.1191920, 0.9503041]]
 )
 
-PERIODS = (style.NO_PERIOD, *style.PERIODS, style.LONGER)
+# The least distance in CIE Lab of all pairs (2.3 is just noticeable where areas touch).
+LEAST = {
+    "periods": 19, "neighbouring periods": 27, "exponents": 39, "kinds of attractors": 32, "both ways": 45,
+    "curves": 26, "curves by period": 18, "orbits without a window": 11, "sides": 82, "portrait": 32,
+}  # fmt: skip
 
-_TYPES = [colour for name, colour in drawn_curves.COLOURS.items() if name != "graze"]
 
-# Pairs of colours, and the least distance of all in CIE Lab (2.3 is just noticeable where areas touch).
-LEGENDS = {
-    "periods": (itertools.combinations((*PERIODS, style.NOT_COMPUTED), 2), 19),
-    "neighbouring periods": (itertools.pairwise(PERIODS), 27),
-    "exponents": (itertools.combinations(style.EXPONENTS, 2), 39),
-    "kinds of attractors": (itertools.combinations([colour for _, colour in families.KINDS.values()], 2), 32),
-    "branches": (itertools.combinations((*style.BRANCHES.values(), style.INK), 2), 45),
-    "curves": (itertools.combinations(drawn_curves.COLOURS.values(), 2), 26),
-    "curves by period": (itertools.combinations((*drawn_curves.ORBITS, *_TYPES), 2), 18),
-    "orbits without a window": (itertools.combinations(strip.REASON_COLOURS.values(), 2), 11),
-    "sides": ([(style.RIGHT, style.LEFT)], 82),
-    "portrait": (itertools.combinations((style.INK, style.SECTION, style.IMPACT, style.FAINT), 2), 32),
-}
-LEGENDS = {name: (list(pairs), least) for name, (pairs, least) in LEGENDS.items()}
+def colours_of_periods(fig):
+    picture = image(fig.axes[1])
+    return [to_rgb(picture.cmap(picture.norm(n))) for n in range(14)]
+
+
+def by_label(ax):
+    return {line.get_label(): line.get_color() for line in ax.lines}
+
+
+def kinds_of_attractors():
+    """Basins of a part of a run have the colours of kinds of attractors: of each there are some here."""
+    data = golden()["basins"].copy(deep=True)
+    data["attractor_id"][:], data["status"][:], data["attractor"][:], data["period"][:] = -1, 0, 1, 1
+    data["average"][:] = 0
+    data["status"][5, 0] = data["attractor"][5, 0] = -1
+    unsettled = (np.nan, np.nan, 1)
+    for row, (right, left, period) in enumerate([(0, 0, 1), (1, 0, 1), (0, 1, 1), (1, 1, 1), (1, 1, 0), unsettled]):
+        data["average"].loc[{"averaged": "impacts_right"}][row] = right
+        data["average"].loc[{"averaged": "impacts_left"}][row] = left
+        data["period"][row] = period
+    return {tuple(colour) for colour in np.asarray(image(vs.plot(data).axes[0]).get_array()).reshape(-1, 3)}
+
+
+def reasons():
+    """Of orbits in no window, four at a time, as the sweep of the record has four orbits."""
+    windows, found = golden()["file windows"], set()
+    assert len(windows.orbit_reason.attrs["flag_meanings"].split()) == 1 + NUMBERS["orbits without a window"]
+    for first in (1, 5, 6):
+        changed = windows.assign(
+            orbit_reason=("orbit", np.arange(first, first + 4, dtype="int8"), windows.orbit_reason.attrs)
+        )
+        fig = vs.plot(golden()["file sweep"], windows=changed)
+        found |= {to_rgb(area.get_facecolor()[0]) for ax in fig.axes for area in ax.collections if spans(area)}
+    return found
+
+
+def spans(area):
+    """Whether this is a bar below the diagram, of orbits in no window."""
+    return (
+        type(area).__name__ == "PolyCollection"
+        and area.get_paths()
+        and area.get_paths()[0].vertices[:, 1].max() <= -0.7
+    )
+
+
+@cache
+def colours(legend) -> list:
+    """Colours of a picture that stand side by side."""
+    if legend in ("periods", "neighbouring periods"):
+        fig = vs.plot(plane())
+        return [*colours_of_periods(fig), *([fig.axes[0].patch.get_facecolor()] if legend == "periods" else [])]
+    if legend == "exponents":
+        lines = by_label(vs.plot(swept(), "lyapunov").axes[0])
+        return [lines[rf"$\lambda_{i}$"] for i in (1, 2, 3, 4)]
+    if legend == "kinds of attractors":
+        return [*kinds_of_attractors()]
+    if legend == "both ways":
+        x1, axes = np.zeros((40, 2, 40)), {"b": np.linspace(1, 2, 40), "start": ["up", "down"]}
+        x1[:20, 0] = 1
+        ax = vs.plot(made(axes, {"x1": x1, "period": np.ones((40, 2), int)})).axes[0]
+        return [line.get_color() for line in marked(ax, "periodic")]
+    if legend == "curves":
+        return curve_colours(*(circle(kind, n + 1) for n, kind in enumerate(TYPES)))
+    if legend == "curves by period":
+        by_period = curve_colours(*(circle("graze", n, n) for n in range(1, 31)))
+        return [*by_period, *curve_colours(*(circle(kind, n + 1) for n, kind in enumerate(TYPES[:-1])))]
+    if legend == "orbits without a window":
+        return [*reasons()]
+    if legend == "sides":
+        lines = by_label(vs.plot(swept(), "impacts").axes[0])
+        return [lines["right"], lines["left"]]
+    lines = by_label(ax := vs.plot(bouncing()).axes[0])
+    return [ax.lines[0].get_color(), lines[r"$t = 0$ mod $T$"], lines["impact"], lines["right stop, $x_1 = b$"]]
+
+
+TYPES = ("fold", "flip", "pitchfork", "neimark_sacker", "graze")
+NUMBERS = {
+    "periods": 15, "neighbouring periods": 14, "exponents": 4, "kinds of attractors": 6, "both ways": 3, "curves": 5,
+    "curves by period": 13, "orbits without a window": 9, "sides": 2, "portrait": 4,
+}  # fmt: skip
+
+
+def curve_colours(*curves):
+    lines = marked(vs.plot(chart(*curves)).axes[0], "curve")
+    return [*dict.fromkeys(line.get_color() for line in lines)]
 
 
 def lab(colour, vision):
@@ -56,8 +131,8 @@ def lab(colour, vision):
     return np.array([116 * f[1] - 16, 500 * (f[0] - f[1]), 200 * (f[1] - f[2])])
 
 
-def distance(one, other, vision):
-    return np.linalg.norm(lab(one, vision) - lab(other, vision))
+def distance(colour, other, vision):
+    return np.linalg.norm(lab(colour, vision) - lab(other, vision))
 
 
 def test_lab():
@@ -67,16 +142,11 @@ def test_lab():
     assert distance("#33a02c", "#ff7f00", "normal") > 80 and distance("#33a02c", "#ff7f00", "protanopia") < 15
 
 
-@pytest.mark.parametrize("vision", VISIONS)
-@pytest.mark.parametrize("legend", LEGENDS)
-def test_colours_of_a_legend_are_far_apart(legend, vision):
-    pairs, least = LEGENDS[legend]
-    assert not [pair for pair in pairs if distance(*pair, vision) < least]
-
-
-def test_there_is_a_colour_for_each_period():
-    assert len(set(style.PERIODS)) == style.LONGEST
-
-
-def test_there_is_a_colour_for_each_reason_of_no_window():
-    assert set(strip.REASON_COLOURS) == set(REASONS) - {"in_a_window"}
+@pytest.mark.parametrize("legend", LEAST)
+def test_colours_of_a_legend_are_far_apart(legend):
+    """With each kind of vision; and there are as many as a picture tells apart."""
+    side_by_side = [to_rgb(colour) for colour in colours(legend)]
+    assert len({*side_by_side}) == NUMBERS[legend]
+    pairs = itertools.pairwise(side_by_side) if "neighbour" in legend else itertools.combinations(side_by_side, 2)
+    distances = {(vision, pair): distance(*pair, vision) for pair in pairs for vision in VISIONS}
+    assert distances and [pair for pair, apart in distances.items() if apart < LEAST[legend]] == []

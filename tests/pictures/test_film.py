@@ -1,16 +1,16 @@
 """Films of orbits: what a frame shows, the files, and what is refused."""
 
-import matplotlib
 import numpy as np
 import pytest
+from matplotlib.animation import FFMpegWriter, FuncAnimation
 from PIL import Image
 from support import sample
 from support.programs import main
 
 import vibro_sweep as vs
-from vibro_sweep.plotting import film
 
 SYSTEM = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
+FRAMES = 200
 
 
 @pytest.fixture(scope="module")
@@ -21,13 +21,20 @@ def data():
 
 @pytest.fixture
 def few(monkeypatch):
-    monkeypatch.setattr(film, "FRAMES", 2)
+    """Films are shortened to two of their frames."""
+    whole = FuncAnimation.__init__
+
+    def shortened(self, figure, show, frames, **options):
+        assert frames == FRAMES
+        whole(self, figure, show, 2, **options)
+
+    monkeypatch.setattr(FuncAnimation, "__init__", shortened)
 
 
 def test_a_frame_shows_the_masses_where_they_are(data):
     shown = vs.plot(data, "film", at={"b": 4.0})
     there = data.sel(b=4.0)
-    shown.show(film.FRAMES - 1)
+    shown.show(FRAMES - 1)
     (first, _), (second, _) = shown.boxes
     for box, name in ((first, "trajectory_x1"), (second, "trajectory_x2")):
         assert box.get_x() + box.get_width() / 2 == pytest.approx(float(there[name][-1]), abs=1e-12)
@@ -48,7 +55,7 @@ def test_of_two_starts_the_first_is_shown():
 @pytest.mark.parametrize("suffix", sample(1, [".gif", ".mp4"]))
 def test_files(data, tmp_path, few, suffix):
     """A file that nobody has changed is replaced; the suffix asks for a film."""
-    if suffix == ".mp4" and not film.FFMpegWriter.isAvailable():
+    if suffix == ".mp4" and not FFMpegWriter.isAvailable():
         with pytest.raises(vs.PlotError, match=r"ffmpeg.*\.gif"):
             vs.plot(data, output=tmp_path / "film.mp4")
         return
@@ -85,8 +92,24 @@ def test_of_a_simulated_orbit(few):
     ball = vs.Oscillator.named("ball_in_cavity", mass_ratio=0.05, zeta=0.01, F=0.1, omega=1, R=0.7, b=2.2)
     orbit = vs.simulate(ball, (0, 0.1, 0, 0), 30)
     moving = orbit.animate(periods=2)
-    assert isinstance(moving, matplotlib.animation.FuncAnimation) and "<img" in moving.to_jshtml(fps=2)
+    assert isinstance(moving, FuncAnimation) and "<img" in moving.to_jshtml(fps=2)
     for periods in (0, 1.5, None):
         with pytest.raises(ValueError, match="periods"):
             orbit.animate(periods)
     assert np.isfinite(orbit.section).all()
+
+
+def test_a_compliant_stop_is_pressed_in():
+    system = vs.Oscillator.named(
+        "one_mass", zeta=0.02, F=0.6, omega=0.9, k_stop=20, c_stop=8, b=1, tau=0, release="force", stops="right"
+    )
+    trajectory = {"periods": 2, "samples": 1601}
+    observe = ["section", "contacts"]
+    data = vs.sweep(system, {"omega": [0.8]}, transient=50, record=20, observe=observe, trajectory=trajectory)
+    film = vs.plot(data, "film")
+    ((line, place),) = film.stops
+    assert place.max() - place.min() == pytest.approx(data.penetration_max.values[0], rel=1e-3)
+    film.show(0)
+    before = line.get_xdata()[0]
+    film.show(int(np.argmax(place) / (len(place) - 1) * (FRAMES - 1)))
+    assert line.get_xdata()[0] > before

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 from support import slow_cases
+from support.figures import kinds
 from support.scene_texts import parsed
 
 import vibro_sweep as vs
-from vibro_sweep import plotting
 
 CAVITY = """
 system: {type: ball_in_cavity, mass_ratio: 0.05, zeta: 0.01, F: 0.1, omega: 1, R: 0.7, b: 1}
@@ -66,21 +66,21 @@ def test_impacts_of_its_trajectories_have_the_gap(cavity):
 
 @pytest.mark.slow
 def test_all_kinds_are_drawn(cavity):
-    kinds = plotting.kinds(cavity)
-    assert {"bifurcation", "lyapunov", "impacts", "phase-portrait", "configuration", "history"} <= set(kinds)
-    for kind in kinds:
-        assert plotting.figure(cavity, kind).axes
+    able = kinds(cavity)
+    assert {"bifurcation", "lyapunov", "impacts", "phase-portrait", "configuration", "history"} <= {*able}
+    for kind in able:
+        assert vs.plot(cavity, kind).axes
 
 
 @pytest.mark.parametrize("scene", [SHIFTED, *slow_cases(CAVITY)], ids=["shifted", "cavity"])
 def test_energies_are_drawn(scene, tmp_path):
     path = run(tmp_path, scene.replace("impacts", "impacts, energy"))
-    assert "energy" in plotting.kinds(path) and plotting.figure(path, "energy").axes
+    assert "energy" in kinds(path) and vs.plot(path, "energy").axes
 
 
 @pytest.mark.slow
 def test_a_portrait_is_that_of_the_gap(cavity):
-    ax = plotting.figure(cavity, "phase-portrait").axes[0]
+    ax = vs.plot(cavity, "phase-portrait").axes[0]
     assert (ax.get_xlabel(), ax.get_ylabel()) == ("$g$", r"$\dot g$")
     line = ax.lines[0]
     assert np.nanmax(np.abs(line.get_xdata())) == pytest.approx(0.8, rel=1e-12)
@@ -88,7 +88,7 @@ def test_a_portrait_is_that_of_the_gap(cavity):
 
 @pytest.mark.slow
 def test_stops_of_a_contact_between_masses_slant(cavity):
-    ax = plotting.figure(cavity, "configuration").axes[0]
+    ax = vs.plot(cavity, "configuration").axes[0]
     walls = {line.get_label(): line for line in ax.lines if "stop" in str(line.get_label())}
     for label, gap in (("right stop, $g = b$", 0.8), ("left stop, $g = -b$", -0.8)):
         x1, x2 = walls[label].get_data()
@@ -96,7 +96,7 @@ def test_stops_of_a_contact_between_masses_slant(cavity):
 
 
 def test_both_grazes_and_both_stops_over_the_clearance(tmp_path):
-    ax = plotting.figure(run(tmp_path, SHIFTED), "bifurcation").axes[0]
+    ax = vs.plot(run(tmp_path, SHIFTED), "bifurcation").axes[0]
     touch = vs.grazing(vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=6, offset=0.2))
     marks = {line.get_label(): line.get_xdata()[0] for line in ax.lines if line.get_gid() == "grazing"}
     assert marks == {
@@ -110,7 +110,7 @@ def test_both_grazes_and_both_stops_over_the_clearance(tmp_path):
 
 @pytest.mark.slow
 def test_the_double_graze_unfolds_in_a_plane(tmp_path):
-    ax = plotting.figure(run(tmp_path, PLANE)).axes[0]
+    ax = vs.plot(run(tmp_path, PLANE)).axes[0]
     curves = {line.get_label(): line.get_data() for line in ax.lines if line.get_gid() == "grazing"}
     assert len(curves) == 2
     star = vs.grazing(vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=6)).b

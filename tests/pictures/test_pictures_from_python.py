@@ -1,13 +1,13 @@
-"""Pictures of Datasets and orbits, in a notebook."""
+"""Pictures of Datasets are those of their files, also in axes of the caller."""
 
 import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from support import slow_cases
+from support.figures import kinds
 
 import vibro_sweep as vs
-from vibro_sweep import plotting
 
 SYSTEM = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=6.6)
 SHORT = dict(transient=20, record=10)
@@ -25,20 +25,9 @@ def drawn(fig):
 def test_pictures_of_a_dataset_are_those_of_its_file(tmp_path, kind):
     orders = dict(trajectory={"periods": 2, "samples": 50}, start={"follow": "both"}, observe=["section", "lyapunov"])
     data = vs.sweep(SYSTEM, {"b": [6.5, 6.6, 6.7]}, output=tmp_path / "a.h5", **orders, **SHORT)
-    assert plotting.kinds(data) == plotting.kinds(tmp_path / "a.h5")
+    assert kinds(data) == kinds(tmp_path / "a.h5")
     assert np.array_equal(drawn(vs.plot(data, kind)), drawn(vs.plot(tmp_path / "a.h5", kind)))
     assert np.array_equal(drawn(vs.plot(data.transpose(), kind)), drawn(vs.plot(data, kind)))
-
-
-def test_picture_of_a_part_of_a_dataset():
-    orders = dict(trajectory={"periods": 2, "samples": 50}, observe=["section", "lyapunov"])
-    data = vs.sweep(SYSTEM, {"b": [6.5, 6.6, 6.7]}, **orders, **SHORT)
-    one = data.sel(b=6.6)
-    assert plotting.kinds(one) == ["phase-portrait", "configuration", "history", "film", "iteration", "poincare"]
-    assert "b = 6.6" in vs.plot(one, "history").get_suptitle()
-    assert len(vs.plot(data.isel(b=slice(1, 3)), "history").axes) == 2
-    (ax,) = vs.plot(data, "history", at={"b": 6.61}).axes
-    assert "6.6" in ax.get_title()
 
 
 @pytest.fixture(scope="module")
@@ -75,22 +64,3 @@ def test_a_plane_in_the_axes_of_the_caller(variables):
     ax = Figure().subplots()
     assert vs.plot(data, ax=ax) is ax.figure
     assert np.array_equal(ax.images[0].get_array(), vs.plot(data).axes[0].images[0].get_array())
-
-
-def test_picture_of_an_orbit():
-    orbit = vs.simulate(SYSTEM, (0, 0, 0, 0), 50)
-    portrait, history = orbit.plot(periods=3).axes
-    begin, end = orbit.section_times[-4], orbit.section_times[-1]
-    t = history.lines[0].get_xdata()
-    assert (t[0], t[-1]) == (begin, end)
-    inside = orbit.impacts[(orbit.impacts["t"] >= begin) & (orbit.impacts["t"] <= end)]
-    marks = np.concatenate([line.get_xdata() for line in history.lines[1:3]])
-    assert len(inside) > 1 and np.array_equal(np.sort(marks), inside["t"])
-    jumps = [line for line in portrait.lines if list(line.get_xdata()) in ([6.6, 6.6], [-6.6, -6.6])]
-    assert [tuple(line.get_ydata()) for line in jumps][: len(inside)] == [(v, -0.8 * v) for v in inside["v1"]]
-    arrows = [text for text in portrait.texts if text.get_gid() == "time"]
-    assert len(arrows) == 4 and all((one.xy[0] - one.xyann[0]) * one.xy[1] > 0 for one in arrows)  # right where v1 > 0
-    named = {text.get_text() for text in portrait.figure.legends[0].get_texts()}
-    assert {"impact", "stop", "direction of time"} < named
-    with pytest.raises(ValueError, match="no motion to draw"):
-        vs.simulate(SYSTEM, (0, 0, 0, 0), 0).plot()

@@ -5,10 +5,10 @@ import re
 
 import numpy as np
 import pytest
+from support.figures import made
 from support.programs import main
 
 import vibro_sweep as vs
-from vibro_sweep.model.units import SI, Units, shown_unit, unit_in
 
 PHYSICAL = vs.System.physical(M1=2, M2=8, K1=2000, K2=10_000, C1=5, C2=25, P1=10, P2=0, Omega=26.0, R=0.7, B=0.012)
 CHAIN = vs.Oscillator.named(
@@ -19,45 +19,62 @@ SHORT = {"transient": 60, "record": 8}
 MOTION = {"observe": WORDS, "trajectory": {"periods": 1, "samples": 5}} | SHORT
 
 
+BALL = {"zeta": 0.1, "F": 1, "omega": 1, "b": 1, "k_stop": 2, "c_stop": 1, "preload": 0.1}
+OBSERVED = {"lyapunov": ["lyapunov"], "impact_power": ["energy"]}
+
+
 @pytest.mark.parametrize(
-    ("declared", "units", "told", "shown"),
+    ("name", "units", "told", "shown"),
     [
-        ("m", Units(2, 0.005, 0.1), "0.005 m", " [5 mm]"),
-        ("m s-1", Units(2, 0.5, 0.1), "5.0 m s-1", " [5 m/s]"),
-        ("rad s-1", Units(2, 0.5, 0.25), "4.0 rad s-1", " [4 rad/s]"),
-        ("s-1", Units(2, 0.5, 0.25), "4.0 s-1", " [4/s]"),
-        ("W", Units(2, 0.5, 0.5), "4.0 W", " [4 W]"),
-        ("N m-1", Units(2, 0.5, 0.5), "8.0 N m-1", " [8 N/m]"),
-        ("N s m-1", Units(2, 0.5, 0.5), "4.0 N s m-1", " [4 N s/m]"),
-        ("m", Units(2, 0.001, 0.1), "0.001 m", " [mm]"),
-        ("W", Units(1, 0.001, 1), "1e-06 W", " [\N{MICRO SIGN}W]"),
-        ("m", Units(1, 0.9999999e-3, 1), "0.0009999999 m", " [mm]"),
-        ("m", Units(1, 0.9, 1), "0.9 m", " [900 mm]"),
-        ("N", Units(1000, 0.001, 1), "N", " [N]"),
-        ("s-1", Units(2, 0.5, 1.0000000000000002), "0.9999999999999998 s-1", " [1/s]"),
-        ("W", Units(1e-200, 1e-99, 1e-150), "1e+52 W", " [1e+52 W]"),
-        ("m s-1", Units(1, 1e-300, 1e300), "1", ""),
-        ("W", Units(1, 1e300, 1), "1", ""),
-        ("m", SI, "m", " [m]"),
-        ("s-1", SI, "s-1", " [1/s]"),
-        ("N m-1", SI, "N m-1", " [N/m]"),
-        ("rad", Units(2, 0.5, 0.5), "rad", ""),
-        ("1", SI, "1", ""),
-        ("m s-1", None, "1", ""),
-        ("rad s-1", None, "1", ""),
+        ("x1", (2, 0.005, 0.1), "0.005 m", " [5 mm]"),
+        ("v1", (2, 0.5, 0.1), "5.0 m s-1", " [5 m/s]"),
+        ("omega", (2, 0.5, 0.25), "4.0 rad s-1", " [4 rad/s]"),
+        ("lyapunov", (2, 0.5, 0.25), "4.0 s-1", " [4/s]"),
+        ("impact_power", (2, 0.5, 0.5), "4.0 W", " [4 W]"),
+        ("k_stop", (2, 0.5, 0.5), "8.0 N m-1", " [8 N/m]"),
+        ("c_stop", (2, 0.5, 0.5), "4.0 N s m-1", " [4 N s/m]"),
+        ("x1", (2, 0.001, 0.1), "0.001 m", " [mm]"),
+        ("impact_power", (1, 0.001, 1), "1e-06 W", " [\N{MICRO SIGN}W]"),
+        ("x1", (1, 0.9999999e-3, 1), "0.0009999999 m", " [mm]"),
+        ("x1", (1, 0.9, 1), "0.9 m", " [900 mm]"),
+        ("preload", (1000, 0.001, 1), "N", " [N]"),
+        ("lyapunov", (2, 0.5, 1.0000000000000002), "0.9999999999999998 s-1", " [1/s]"),
+        ("impact_power", (1e-200, 1e-99, 1e-150), "1e+52 W", " [1e+52 W]"),
+        ("v1", (1, 1e-300, 1e300), "1", ""),
+        ("impact_power", (1, 1e300, 1), "1", ""),
+        ("x1", "SI", "m", " [m]"),
+        ("lyapunov", "SI", "s-1", " [1/s]"),
+        ("k_stop", "SI", "N m-1", " [N/m]"),
+        ("tau", (2, 0.5, 0.5), "rad", ""),
+        ("F", "SI", "N", " [N]"),
+        ("period", "SI", "1", ""),
+        ("v1", None, "1", ""),
+        ("omega", None, "1", ""),
     ],
 )
-def test_a_unit(declared, units, told, shown):
-    assert unit_in(declared, units) == told and shown_unit(told) == shown
+def test_a_unit(name, units, told, shown):
+    """As the data have it, and as a label shows it."""
+    system = vs.Oscillator.named("one_mass", **BALL, units=units)
+    axis = {name if name in {*BALL, "tau"} else "b": [1.0, 1.5]}
+    observe = OBSERVED.get(name, ["section"])
+    assert vs.sweep(system, axis, observe=observe, transient=0, record=2)[name].attrs["units"] == told
+    assert label_of(told) == "$x_1$" + shown
+
+
+def label_of(units) -> str:
+    """Of a coordinate with these units."""
+    data = made({}, {"x1": np.arange(9.0)})
+    data.x1.attrs |= {} if units is None else {"units": units}
+    return vs.plot(data, "iteration").axes[0].get_ylabel()
 
 
 @pytest.mark.parametrize("text", [None, "", "nondimensional", "$x$", r"\frac", "m" * 100])
 def test_what_has_no_place_in_a_label(text):
-    assert shown_unit(text) == ""
+    assert label_of(text) == "$x_1$"
 
 
 def test_they_belong_to_the_system():
-    assert PHYSICAL.units == Units(2.0, 10 / 2000, np.sqrt(2 / 2000)) and CHAIN.units == SI
+    assert PHYSICAL.units == (2.0, 10 / 2000, np.sqrt(2 / 2000)) and CHAIN.units == (1, 1, 1)
     for system in (PHYSICAL, CHAIN):
         for other in (system.replace(b=0.02), copy.deepcopy(system)):
             assert other.units == system.units
@@ -207,3 +224,13 @@ def test_functions():
 def test_they_are_in_the_text_of_a_scene():
     data = vs.sweep(PHYSICAL, {"b": [2.0, 2.1]}, observe=["section"], transient=0, record=1)
     assert "units: [2, 0.005, 0.03162277660168379]" in data.attrs["scene"] and "units" not in data.attrs
+
+
+@pytest.mark.slow
+def test_limits_of_a_frequency_are_said_in_hertz_too():
+    system = vs.Oscillator.named("one_mass", zeta=0.1, F=1, omega=6, R=0.5, b=1, units="SI")
+    data = vs.sweep(system, {"omega": [2 * np.pi, 4 * np.pi]}, transient=2, record=2)
+    with pytest.raises(vs.PlotError, match=r"has omega from 6.28319 to 12.5664 \[rad/s\], which is 1 to 2 Hz"):
+        vs.plot(data, xlim=(1, 2))
+    with pytest.raises(vs.PlotError, match=r"'Hz' is not swept; allowed: omega \[rad/s\]"):
+        vs.plot(data, "iteration", at={"Hz": 1})

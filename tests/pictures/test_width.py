@@ -5,12 +5,11 @@ import itertools
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.text import Text
+from support.figures import kinds as kinds_of
 from support.kinds_of_files import KINDS
 from support.programs import main
 
 import vibro_sweep as vs
-from vibro_sweep.plotting import PlotOptions, figure
-from vibro_sweep.plotting import kinds as kinds_of
 
 pytestmark = pytest.mark.slow  # one file of each kind is made
 
@@ -20,8 +19,8 @@ RAGGED = ("branches", "curves")
 
 def pictures(path, name):
     if name in RAGGED:
-        return [figure(path, options=PlotOptions(width=WIDTH))]
-    return [figure(path, kind, PlotOptions(width=WIDTH)) for kind in kinds_of(path)]
+        return [vs.plot(path, width=WIDTH)]
+    return [vs.plot(path, kind, width=WIDTH) for kind in kinds_of(path)]
 
 
 def texts_of(fig):
@@ -53,7 +52,7 @@ def test_all_type_is_read_and_on_the_page(kinds, name):
 
 
 def test_a_strip_of_windows(kinds):
-    fig = figure(kinds("sweep"), None, PlotOptions(width=WIDTH, windows=kinds("windows")))
+    fig = vs.plot(kinds("sweep"), width=WIDTH, windows=kinds("windows"))
     assert {text.get_fontsize() for text, _ in texts_of(fig)} == {8.0}
 
 
