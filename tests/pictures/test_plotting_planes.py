@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_rgba
 from support import slow_cases
-from support.files import described
+from support.contents import described
 from support.oscillators import PAPER
 from support.pictures import image, write
 

@@ -13,10 +13,11 @@ import jsonschema
 import numpy as np
 
 import vibro_sweep as vs
+from support.contents import assert_same_bits
 from support.fuzz_scenes import broken, scene, to_yaml
 from support.programs import ended
 from support.scene_texts import parsed
-from support.scenes import assert_same_bits, computed
+from support.scenes import computed
 from support.searching import Report, new_report
 from vibro_sweep.model.status import VALID
 from vibro_sweep.scene.yaml_text import YAMLTextError, read_yaml

@@ -17,8 +17,9 @@ import h5py
 import pytest
 from support import ROOT
 from support.clusters import LIMIT, Cluster
+from support.contents import arrays_of, assert_same_bits
 from support.programs import main
-from support.scenes import ALL, COMPLIANT, PAPER, arrays_of, assert_same_bits, done, run
+from support.scenes import ALL, COMPLIANT, PAPER, done, run
 
 import vibro_sweep as vs
 from vibro_sweep.driver import sweep

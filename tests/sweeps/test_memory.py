@@ -7,8 +7,9 @@ import tracemalloc
 import numpy as np
 import pytest
 from support import sample
+from support.contents import arrays_of, assert_same_bits
 from support.scene_texts import parsed
-from support.scenes import EVERY, PAPER, SCENES, arrays_of, assert_same_bits, computed, scene_of
+from support.scenes import EVERY, PAPER, SCENES, computed, scene_of
 
 import vibro_sweep as vs
 from vibro_sweep.driver import cost, memory_needed, sweep

@@ -6,8 +6,8 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 from support import ROOT, sample
-from support.files import described
-from support.scenes import ALL, PAPER, SCENES, arrays_of, assert_same_bits, run, scene_of
+from support.contents import arrays_of, assert_same_bits, described
+from support.scenes import ALL, PAPER, SCENES, run, scene_of
 
 import vibro_sweep as vs
 from vibro_sweep.driver import blocks, compute
