@@ -7,6 +7,8 @@ from types import SimpleNamespace
 
 import pytest
 from support import slow_cases
+from support.oscillators import PAPER_NUMBERS
+from support.programs import on_a_terminal
 
 from vibro_sweep.driver import notebook_bar, progress
 
@@ -54,39 +56,24 @@ def test_processes_that_python_starts_say_nothing(tmp_path):
     assert told(tmp_path, WORKER) == ""
 
 
-SWEEP = """
+SWEEP = f"""
 import numpy as np, vibro_sweep as vs
-system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=6.6)
-vs.sweep(system, {"b": np.linspace(6, 7, 50)}, observe=["section"], transient=5, record=5, PROGRESS)
+system = vs.System({PAPER_NUMBERS.replace(": ", "=")}, b=6.6)
+vs.sweep(system, dict(b=np.linspace(6, 7, 50)), observe=["section"], transient=5, record=5, PROGRESS)
 """
 SILENT = "import logging; logging.getLogger('vibro_sweep').setLevel(logging.WARNING)"
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(sys.platform == "win32", reason="has no pseudo-terminals")
 @pytest.mark.parametrize(
     ("before", "progress", "bar"),
     [("", "", True), (SILENT, "", False), ("", "progress=lambda done, total: None", False)],
 )
 def test_a_bar_on_a_terminal(tmp_path, before, progress, bar):
-    import os
-    import pty
-
-    file, (ours, theirs) = tmp_path / "program.py", pty.openpty()
+    file = tmp_path / "program.py"
     file.write_text(before + SWEEP.replace("PROGRESS", progress))
-    env = os.environ | {"TERM": "xterm"}
-    with subprocess.Popen(
-        [sys.executable, file], stdin=theirs, stdout=subprocess.DEVNULL, stderr=theirs, env=env
-    ) as one:
-        os.close(theirs)
-        shown = b""
-        try:
-            while read := os.read(ours, 4096):
-                shown += read
-        except OSError:  # the other end is closed
-            pass
-    os.close(ours)
-    assert one.returncode == 0 and (b"50/50" in shown) == bar == (b"points" in shown), shown
+    shown = on_a_terminal(file)
+    assert (b"50/50" in shown) == bar == (b"points" in shown), shown
 
 
 class Shown:
