@@ -7,10 +7,7 @@ import vibro_sweep as vs
 from support.contents import arrays_of, assert_same_bits  # noqa: F401  for faults/test_disk.py
 from support.oscillators import PAPER_NUMBERS
 from support.scene_texts import parsed
-from vibro_sweep.driver import blocks
-from vibro_sweep.driver.compute import CHAIN_ENDS, compute
 
-OSCILLATOR = PAPER_NUMBERS
 PAPER = f"{PAPER_NUMBERS}, b: 6.6"
 ALL = "observe: [section, lyapunov, impacts]"
 
@@ -112,22 +109,3 @@ def done(output):
             return np.count_nonzero(data["status"].values != -1)
     except vs.StoreError:  # it is being made
         return 0
-
-
-def computed(scene, points, orbits):
-    """The scene's arrays by blocks of so many points and orbits, chains gone on with, put together in its order."""
-    todo, whole = list(blocks.blocks(scene, points, orbits)), {}
-    most = 0
-    while todo:
-        block = todo.pop()
-        box, arrays = compute(block)
-        ends = arrays.pop(CHAIN_ENDS, None)
-        assert (ends is None) == block.last
-        if ends is not None:
-            todo.append(blocks.next_part(scene, block, ends))
-        most = max(most, arrays["status"].size)
-        for name, values in arrays.items():
-            extra = values.shape[arrays["status"].ndim :]
-            target = whole.setdefault(name, np.full(scene.shape + extra, 99, values.dtype))
-            target[box] = values
-    return whole, most

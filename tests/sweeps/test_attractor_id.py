@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from support import sample
 from support.attractors import same_partition
-from support.scenes import OSCILLATOR, run, scene_of
+from support.oscillators import PAPER_NUMBERS
+from support.scenes import run, scene_of
 
 import vibro_sweep as vs
 from vibro_sweep.analysis.attractors import grouping
@@ -142,7 +143,7 @@ observe: [attractors]"""
 
 def test_basins_are_in_the_file(tmp_path):
     """One grouping of the whole plane, in the order in which the plane meets the attractors; held or read in pieces."""
-    data = run(tmp_path, PLANE, f"{OSCILLATOR}, b: 6.734")
+    data = run(tmp_path, PLANE, f"{PAPER_NUMBERS}, b: 6.734")
     number = data["attractor_id"]
     flat = (data["period"].ravel(), data["average"].reshape(-1, 7), data["average_error"].reshape(-1, 7))
     assert set(np.unique(number)) == {1, 2, 3} and set(np.unique(data["attractor"])) == {1}
@@ -150,7 +151,7 @@ def test_basins_are_in_the_file(tmp_path):
     impacts = data["average"][..., 4:6]
     assert len(np.unique(number[(impacts == 0).all(axis=-1)])) == 1
     for room in (1, 3, 5, 26, 27):
-        assert np.array_equal(numbers_again(scene_of(PLANE, f"{OSCILLATOR}, b: 6.734"), data, room), number), room
+        assert np.array_equal(numbers_again(scene_of(PLANE, f"{PAPER_NUMBERS}, b: 6.734"), data, room), number), room
 
 
 @pytest.mark.parametrize("keys", sample(1, [["x1", "b"], ["b", "x1"]]))
@@ -192,12 +193,12 @@ observe: [attractors]"""
 
 def test_one_point_and_what_has_no_attractor(tmp_path):
     text = "start: {random: 4, seed: 1}\norbit: {transient: 6000, record: 400}\nobserve: [attractors]"
-    data = run(tmp_path, text, f"{OSCILLATOR}, b: 6.6")
+    data = run(tmp_path, text, f"{PAPER_NUMBERS}, b: 6.6")
     assert same_partition(data["attractor_id"], data["attractor"]) and in_order(data["attractor_id"])
-    one = run(tmp_path, text.replace("start: {random: 4, seed: 1}", ""), f"{OSCILLATOR}, b: 6.6")
+    one = run(tmp_path, text.replace("start: {random: 4, seed: 1}", ""), f"{PAPER_NUMBERS}, b: 6.6")
     assert one["attractor_id"].shape == () and one["attractor_id"] == 1
     text = "sweep: {zeta: {values: [1.0e+6, 0.05]}}\nstart: {random: 3}\norbit: {transient: 10, record: 400}"
-    data = run(tmp_path, f"{text}\nobserve: [attractors]", OSCILLATOR.replace("zeta: 0.05, ", "") + ", b: 6.6")
+    data = run(tmp_path, f"{text}\nobserve: [attractors]", PAPER_NUMBERS.replace("zeta: 0.05, ", "") + ", b: 6.6")
     assert np.all(data["attractor_id"][0] == -1)  # cannot be computed
     assert np.array_equal(data["attractor_id"] == 0, data["attractor"] == 0)
 
@@ -241,4 +242,4 @@ def test_many_points_need_little_memory():
 
 
 def test_scenes_without_attractors_have_no_numbers(tmp_path):
-    assert "attractor_id" not in run(tmp_path, "orbit: {transient: 1, record: 10}", f"{OSCILLATOR}, b: 6.6")
+    assert "attractor_id" not in run(tmp_path, "orbit: {transient: 1, record: 10}", f"{PAPER_NUMBERS}, b: 6.6")

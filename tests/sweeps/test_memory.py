@@ -3,16 +3,17 @@
 import subprocess
 import sys
 import tracemalloc
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
 from support import sample
 from support.contents import arrays_of, assert_same_bits
 from support.scene_texts import parsed
-from support.scenes import EVERY, PAPER, SCENES, computed, scene_of
+from support.scenes import ALL, EVERY, PAPER, SCENES, run, scene_of
 
 import vibro_sweep as vs
-from vibro_sweep.driver import cost, memory_needed, sweep
+from vibro_sweep.driver import blocks, compute, cost, memory_needed, sweep
 from vibro_sweep.driver.measuring import OrbitCost
 from vibro_sweep.engine.one_system import points_of
 from vibro_sweep.scene.size import MAX_AT_ONCE, numbers_at_once
@@ -78,6 +79,25 @@ MORE = {"failing": (FAILING,), "hasty": (HASTY,)}
 AGAIN = "compliant, follow", "compliant, force"
 
 
+def computed(scene, points, orbits):
+    """The scene's arrays by blocks of so many points and orbits, chains gone on with, put together in its order."""
+    todo, whole = list(blocks.blocks(scene, points, orbits)), {}
+    most = 0
+    while todo:
+        block = todo.pop()
+        box, arrays = compute.compute(block)
+        ends = arrays.pop(compute.CHAIN_ENDS, None)
+        assert (ends is None) == block.last
+        if ends is not None:
+            todo.append(blocks.next_part(scene, block, ends))
+        most = max(most, arrays["status"].size)
+        for name, values in arrays.items():
+            extra = values.shape[arrays["status"].ndim :]
+            target = whole.setdefault(name, np.full(scene.shape + extra, 99, values.dtype))
+            target[box] = values
+    return whole, most
+
+
 @pytest.mark.parametrize(
     "name",
     sample(2, [*(name for name in SCENES if name != "attractors"), *MORE, "compliant", *AGAIN]),
@@ -119,6 +139,18 @@ def test_a_run_in_parts_is_resumed(tmp_path, monkeypatch):
     vs.run(scene, path, workers=1, mode="resume", progress=lambda done, total: seen.append(done))
     assert seen[0] > 0 and seen[-1] == scene.n_points
     assert_same_bits(arrays_of(path), arrays_of(tmp_path / "whole.h5"))
+
+
+def test_section_alone_computes_no_tangent(tmp_path):
+    scene = scene_of(SCENES["random"].replace(ALL, "observe: [section]"))
+    plan = blocks.plan_of(scene)
+    assert not plan.lyapunov and plan.warm_up == 0
+    (block,) = blocks.blocks(scene, points_per_block=1000)
+    with ThreadPoolExecutor(1) as pool:  # a thread of its own, so that its workspace is new
+        _, arrays = pool.submit(compute.compute, block).result()
+        touched = pool.submit(lambda: compute._local.workspace.ensemble.tangent.tobytes().strip(b"\0")).result()
+    assert not touched and "lyapunov" not in arrays
+    assert not {"lyapunov", "impacts_right"} & run(tmp_path, SCENES["random"].replace(ALL, "")).keys()
 
 
 def test_few_large_blocks_at_a_time():
