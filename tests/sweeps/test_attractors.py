@@ -4,14 +4,11 @@ import numpy as np
 import pytest
 from support import sample
 from support.attractors import same_partition
+from support.drawn_starts import drawn_starts
 from support.oscillators import PAPER_NUMBERS
 from support.scenes import run, scene_of
 
 import vibro_sweep as vs
-from vibro_sweep.driver import blocks
-from vibro_sweep.driver.drawn_starts import starts_of
-from vibro_sweep.scene import scene_of as scene_from
-from vibro_sweep.scene.written import changed
 
 
 def by_hand(system, starts, periods, record=400):
@@ -47,8 +44,7 @@ observe: [attractors, impacts, lyapunov]"""
 def test_each_attractor_of_the_brute_force(coexistence):
     """Section points of `simulate` from the same random starts, compared in pairs."""
     scene, data = coexistence
-    (block,) = blocks.blocks(scene, points_per_block=100)
-    starts = starts_of(block)
+    starts = drawn_starts(scene.system, data["b"], 12, seed=3)
     for i, b in enumerate(data["b"]):
         if b == 6.68:  # chaos: its points never meet
             continue
@@ -77,8 +73,7 @@ def test_mirror_images_are_two(coexistence):
     assert sorted((one[4], one[5])) == [0, 4 / 13] and (one[4], one[5]) == (other[5], other[4])
     assert one[6] == pytest.approx(other[6], rel=1e-6) and not np.allclose(one[:4], other[:4], rtol=0.01)
     system = scene.system.replace(b=6.6)
-    (block,) = blocks.blocks(scene, points_per_block=100)
-    starts = starts_of(block)[0]
+    starts = drawn_starts(scene.system, data["b"][:1], 12, seed=3)[0]
     orbits = [vs.simulate(system, starts[label == number][0], 4013) for number in (1, 2)]
     times = (4000 + np.arange(13)) * system.period
     mirrored = -orbits[0].sample(times - system.period / 2)
@@ -194,30 +189,3 @@ def test_no_stop_no_bound():
     text = "sweep: {x1: {values: [-9, 6.7]}}\norbit: {transient: 1, record: 1}"
     assert scene_of(text, f"{PAPER_NUMBERS}, b: 6.7, stops: right").shape == (2,)
     assert scene_of(f"dynamics: map\n{text}".replace("6.7", "7"), f"{PAPER_NUMBERS}, b: 6.7").shape == (2,)
-
-
-@pytest.mark.parametrize("stops", sample(1, ["left", "right", "both"]))
-def test_random_starts_of_any_oscillator_are_between_its_stops(stops):
-    """With one stop, masses that lie around the stops' middle may all have a gap beyond it: it is moved inside."""
-    moved = 0
-    for seed in range(40):
-        rng = np.random.default_rng(seed)
-        n = int(rng.integers(1, 4))
-        numbers = {"M": np.eye(n), "K": 2 * np.eye(n), "C": 0.1 * np.eye(n), "force": np.ones(n)}
-        numbers |= {
-            "contact_normal": rng.normal(size=n),
-            "offset": 10 * rng.normal(),
-            "omega": 0.7,
-            "R": 0.8,
-            "stops": stops,
-        }
-        system = vs.Oscillator.named("linear", b=float(rng.uniform(0.01, 1)), **numbers)
-        given = {"sweep": {"b": [system.b]}, "start": {"random": 3, "seed": 1}, "transient": 0, "record": 1}
-        scene = scene_from(changed({}, {"system": system, **given}), "sweep")
-        (block,) = blocks.blocks(scene, points_per_block=1)
-        states, q = starts_of(block)[0], system.linear
-        gaps = states[:, 0::2] @ q.normal
-        slack = 1e-12 * np.abs(states).max()
-        assert np.all(np.isfinite(states)) and np.all((q.low - slack < gaps) & (gaps < q.high + slack)), seed
-        moved += np.abs(states[:, 0::2] - system.offset).max() > system.b
-    assert moved > 10

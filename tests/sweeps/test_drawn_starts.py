@@ -1,17 +1,13 @@
 """Starts that a sweep draws at random."""
 
 import numpy as np
-from support.scenes import scene_of
-
-from vibro_sweep.driver import blocks
-from vibro_sweep.driver.drawn_starts import starts_of
+from support.drawn_starts import drawn_starts
+from support.oscillators import PAPER
 
 
-def test_drawn_starts():
-    """They depend on the place in the sweep, and are spread over |x_i| < b, |v_i| < omega b."""
-    text = "sweep: {b: {values: [1, 2]}}\nstart: {random: 500, seed: SEED}\norbit: {transient: 0, record: 1}"
-    (block,) = blocks.blocks(scene_of(text.replace("SEED", "1")), points_per_block=2)
-    starts = starts_of(block) / np.array([1, 0.63, 1, 0.63])
+def test_they_depend_on_the_place_and_are_spread_between_the_stops():
+    """Over |x_i| < b, |v_i| < omega b."""
+    starts = drawn_starts(PAPER, [1, 2], 500, seed=1) / np.array([1, 0.63, 1, 0.63])
     assert starts.shape == (2, 500, 4) and len(np.unique(starts)) == starts.size
     for b, drawn in zip((1, 2), starts / np.array([[[1]], [[2]]]), strict=True):
         assert np.all(abs(drawn) < 1), b
