@@ -17,7 +17,7 @@ from support.fuzz_scenes import broken, scene, to_yaml
 from support.programs import ended
 from support.scene_texts import parsed
 from support.searching import Report, new_report
-from vibro_sweep.scene.yaml_text import YAMLTextError, read_yaml
+from support.yaml_core import read
 from vibro_sweep.types import Scene
 
 EPS = 2.0**-52
@@ -32,6 +32,7 @@ BEYOND_THE_SCHEMA = re.compile(
     "must be given; or k_stop|rigid or compliant|both stops are rigid|the map's section|resolution of double|"
     "is farther than"
 )
+UNREADABLE = re.compile(r"line \d+, column \d+: |unacceptable character |longer than ")
 
 
 def contents(folder: Path) -> dict:
@@ -64,20 +65,23 @@ def validator() -> jsonschema.Draft7Validator:
 
 def agreement(n: int, status: int) -> tuple[str, list[str]]:
     """What became of scene n, and where program and schema are not of one mind although the schema can have one."""
+    problems: tuple[str, ...] = ()
     try:
-        data = read_yaml(broken(n).decode("utf-8-sig"))
-    except (YAMLTextError, UnicodeDecodeError):
+        text = broken(n).decode("utf-8-sig")
+        parsed(text)
+    except UnicodeDecodeError:
         return "refused: no YAML", ["it is accepted"] * (status != 2)
-    problems = [error.message for error in validator().iter_errors(data)]
-    if status == 0:
-        return "accepted", problems
-    if problems:
-        return "refused: form", []
-    try:
-        parsed(broken(n).decode("utf-8-sig"))
     except vs.SceneError as error:
-        return "refused: relations and sizes", [one for one in error.problems if not BEYOND_THE_SCHEMA.search(one)]
-    return "refused: relations and sizes", ["load_scene accepts it"]
+        problems = error.problems
+    if any(map(UNREADABLE.match, problems)):
+        return "refused: no YAML", ["it is accepted"] * (status != 2)
+    beyond = [error.message for error in validator().iter_errors(read(text))]
+    if status == 0:
+        return "accepted", beyond
+    if beyond:
+        return "refused: form", []
+    wrong = [problem for problem in problems if not BEYOND_THE_SCHEMA.search(problem)]
+    return "refused: relations and sizes", wrong if problems else ["load_scene accepts it"]
 
 
 def study_of_runs(n: int) -> Report:
