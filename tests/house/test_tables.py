@@ -12,9 +12,12 @@ from vibro_sweep.cli import reference
 from vibro_sweep.driver.blocks import plan_of
 from vibro_sweep.engine.records import POINT, new_results, result_of
 from vibro_sweep.engine.simd.jit import ENGINE, SHARED
+from vibro_sweep.model.catalogue import OF_A_SYSTEM
 from vibro_sweep.model.dimensions import DIMENSIONS
+from vibro_sweep.model.models import MODELS
 from vibro_sweep.model.observables import VARIABLES
 from vibro_sweep.model.parameters import NAMES
+from vibro_sweep.model.state import MOST_MASSES
 from vibro_sweep.scene import resolved_numbers
 
 PAPER = "system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0.1, omega: 0.63, R: 0.8, b: 6.6}"
@@ -75,3 +78,9 @@ def test_every_example_has_its_numbers():
         needed -= {"units"}  # which each variable has
         assert {*needed, "transient", "record"} <= known, path.name
         assert "b_star" in known or {"b_right", "b_left"} <= known, path.name
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_a_name_means_the_same_in_all_models(name):
+    for key, row in MODELS[name].flat(MOST_MASSES).items():
+        assert (row.symbol, row.label) == (OF_A_SYSTEM[key].symbol, OF_A_SYSTEM[key].label), key
