@@ -34,7 +34,7 @@ from support.file_commands import (
     write_scenes_of_commands,
 )  # fmt: skip
 from support.files import TEXT, write_files
-from support.kinds_of_files import KINDS, PERIODIC, WrittenKinds
+from support.kinds_of_files import KINDS, PERIODIC, RAGGED, WrittenKinds
 from support.searching import Report
 from support.worker import Answer, Worker
 
@@ -44,9 +44,9 @@ EVERY = (*KINDS, PERIODIC, HALF)
 CASES = 6  # of each kind of damage, for a seed
 
 
-def seconds_of(key: str) -> float:
-    """How long a command may take on a small file, also where it has to compile."""
-    return 300 if key in (*SLOW, *RESUMING) else 60
+def seconds_of(name: str, key: str) -> float:
+    """How long a command may take on a small file; much longer where it continues orbits."""
+    return 300 if key in SLOW or (name in RAGGED and key in RESUMING) else 20
 
 
 # What is tried, and in which folder
@@ -73,7 +73,7 @@ def of_kind(kinds: WrittenKinds, name: str, call: Callable[..., Answer], slow: b
     keys = [key for key in commands(name) if slow or key not in SLOW]
     for key in keys:
         Path(file).write_bytes(good)  # some commands replace it
-        whole[key] = call(name, key, file, seconds=seconds_of(key))
+        whole[key] = call(name, key, file, seconds=300)  # kernels are compiled
         Path(f"{file}.part").unlink(missing_ok=True)
     Path(file).write_bytes(good)
     return Tried(name, file, keys, whole)
@@ -107,7 +107,7 @@ def fuzz(
         change(file, good, case, [seed, number])
         for key in tried.keys:
             before = stamps()
-            said = call(tried.name, key, tried.file, seconds=seconds_of(key))
+            said = call(tried.name, key, tried.file, seconds=seconds_of(tried.name, key))
             touched = set(dict(before.items() ^ stamps().items()))
             wrong = judged(tried, case, key, said)
             wrong += [f"{name} was changed, made or removed" for name in sorted(touched - may_touch(tried, key))]

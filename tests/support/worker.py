@@ -19,6 +19,7 @@ def answer(name: str, key: str, file: str) -> Answer:
 
 
 def _work(pipe, function: Callable[..., Answer]) -> None:
+    pipe.send("ready")
     with contextlib.suppress(EOFError):
         while True:
             folder, arguments = pipe.recv()
@@ -39,6 +40,7 @@ class Worker:
         self.process = context.Process(target=_work, args=(other, self.function), daemon=True)
         self.process.start()
         other.close()
+        self.pipe.recv()  # all is imported by then
 
     def __call__(self, *arguments, seconds: float) -> Answer:
         outcome = f"it hung for {seconds} s"
