@@ -146,7 +146,7 @@ def outcome_of(tried: Tried, key: str, said: Answer) -> str:
     if isinstance(said, str):
         return "FAILED"
     known = tried.whole.get(key)
-    return ANOTHER if said.outcome == READ and not (known and same(said.result, known.result)) else said.outcome
+    return ANOTHER if said.outcome == READ and known and not same(said.result, known.result) else said.outcome
 
 
 def judged(tried: Tried, case: Case, key: str, said: Answer) -> list[str]:
