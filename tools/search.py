@@ -50,8 +50,7 @@ KINDS = {  # its study, in tests/support
     "scenes": "any_scenes.study",
     "runs-of-scenes": "any_scenes.study_of_runs",
     "extreme-numbers": "any_scenes.study_of_extremes",
-    "files": "fuzzed_commands.study",
-    "files-of-all-kinds": "damage.study",
+    "files": "fuzz_files.study",
     "kills": "kills.study",
     "units": "units.study",
 }

@@ -10,11 +10,10 @@ import time
 import h5py
 import pytest
 from support import slow_cases
+from support.oscillators import PAPER_NUMBERS
 from support.programs import main
 
-from vibro_sweep.driver.measuring import OrbitCost
-
-SCENE = "system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 6.6}\n"
+SCENE = f"system: {{{PAPER_NUMBERS}, b: 6.6}}\n"
 SHORT = SCENE + "sweep: {b: {values: [6.5, 6.6, 6.7]}}\norbit: {transient: 2, record: 3}\n"
 PROGRAM = [sys.executable, "-m", "vibro_sweep"]
 LIMIT = 60
@@ -215,14 +214,32 @@ def test_help_names_every_exit_status(capsys):
     )
 
 
-def test_a_long_run_is_announced(folder, capsys, monkeypatch):
-    monkeypatch.setattr("vibro_sweep.driver.sweep.orbit_cost", lambda *_: OrbitCost(100.0, [], 1.0))
-    monkeypatch.setattr("vibro_sweep.driver.sweep.crowding", lambda *_: 1.0)
-    monkeypatch.setattr("vibro_sweep.driver.cost.available_cores", lambda: 2)
-    assert main(["run", "good.yaml", "--workers", "2"]) == 0
-    assert capsys.readouterr().err == "vibro-sweep: 3 orbits, about 2 min with 2 workers\n"
-    assert main(["run", "good.yaml", "--workers", "2", "--quiet", "--overwrite"]) == 0
-    assert capsys.readouterr().err == ""
+def begun(folder, *options) -> subprocess.Popen:
+    """A run that takes for ever."""
+    (folder / "long.yaml").write_text(SHORT.replace("transient: 2", "transient: 1.0e+9"))
+    command = [*PROGRAM, "run", "long.yaml", "--workers", "2", *options]
+    return subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+
+
+def test_a_long_run_is_announced(folder):
+    process = begun(folder)
+    line = next(line for line in process.stderr if not line.startswith("vibro-sweep: compil"))
+    process.send_signal(signal.SIGINT)
+    assert re.fullmatch(r"vibro-sweep: 3 orbits, about .+ with 2 workers\n", line)
+    assert "interrupted" in process.communicate(timeout=LIMIT)[1] and process.returncode == 130
+
+
+@pytest.mark.slow
+def test_a_quiet_run_is_not_announced(folder):
+    process = begun(folder, "--quiet")
+    limit = time.monotonic() + LIMIT
+    while not (folder / "long.h5.part").exists():
+        assert process.poll() is None and time.monotonic() < limit
+        time.sleep(0.02)
+    time.sleep(3.0)
+    process.send_signal(signal.SIGINT)
+    (line,) = process.communicate(timeout=LIMIT)[1].splitlines()
+    assert line.startswith("vibro-sweep: interrupted")
 
 
 @pytest.mark.slow

@@ -1,14 +1,14 @@
 """Example scenes: they come with the package, can be copied, and run where they are copied to."""
 
+import re
 import tomllib
 from pathlib import Path
 
 import pytest
 from support import ROOT
-from support.programs import main
+from support.programs import ended, main
 
 import vibro_sweep as vs
-from vibro_sweep.cli import examples
 from vibro_sweep.types import Continuation
 
 
@@ -27,7 +27,10 @@ def test_without_a_name_it_is_the_one_of_the_readme(folder, capsys):
     assert main(["check", "quickstart.yaml"]) == 0
 
 
-@pytest.mark.parametrize("name", examples.examples())
+EXAMPLES = sorted((ROOT / "configs").glob("**/*.yaml"))
+
+
+@pytest.mark.parametrize("name", [path.stem for path in EXAMPLES])
 def test_every_example_is_a_scene_that_finds_its_schema(folder, name):
     assert main(["new", name]) == 0
     text = Path(f"{name}.yaml").read_text()
@@ -37,10 +40,13 @@ def test_every_example_is_a_scene_that_finds_its_schema(folder, name):
 
 
 def test_each_example_has_a_name_of_its_own_and_says_what_it_is_for():
-    files = list((ROOT / "configs").glob("**/*.yaml"))
-    assert len(files) == len(examples.examples()) > 20
-    for path in files:
-        assert 20 < len(examples.purpose(path)) < 300 and examples.purpose(path)[-1] in ".?"
+    names = {path.stem for path in EXAMPLES}
+    listed = ended("new", "nothing").err.strip().rpartition("; there are ")[2].split(", ")
+    assert set(listed) == names and len(listed) == len(EXAMPLES) == len(names) > 20
+    table = (ROOT / "docs/reference/scenes.md").read_text().partition("| name | what it is for |\n| --- | --- |\n")[2]
+    purposes = dict(re.findall(r"\| `(\w+)` \| (.*) \|\n", table.partition("\n\n")[0] + "\n"))
+    assert purposes.keys() == names
+    assert all(20 < len(purpose) < 300 and purpose[-1] in ".?" for purpose in purposes.values())
 
 
 def test_commands_in_a_copy_name_files_beside_it(folder):

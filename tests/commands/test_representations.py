@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 from support import ROOT
+from support.oscillators import PAPER
 
 import vibro_sweep as vs
 
-SYSTEM = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=0.4)
+SYSTEM = PAPER.replace(b=0.4)
 CHAIN = vs.Oscillator.named("chain", m=[1] * 6, k=[1] * 7, c=[0.1] * 7, force=[1, 0, 0, 0, 0, 0], omega=1, R=0.5, b=0.3)
 SIXTEEN = np.random.default_rng(16).normal(size=(16, 16))
 LARGE = vs.Oscillator(

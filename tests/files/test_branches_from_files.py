@@ -3,16 +3,14 @@
 import numpy as np
 import pytest
 from support import sample
+from support.contents import words_of
+from support.oscillators import PAPER_NUMBERS
 from support.scene_texts import parsed
 from support.windows import SYSTEM, few  # noqa: F401
 
 import vibro_sweep as vs
-from vibro_sweep.driver.run_continuation import run_continuation
-from vibro_sweep.driver.windows import run_windows
-from vibro_sweep.model.bifurcations import TYPES
-from vibro_sweep.plotting import PlotOptions, figure
 
-NUMBERS = "mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 6.6"
+NUMBERS = f"{PAPER_NUMBERS}, b: 6.6"
 
 
 def scene(begin, start, stop, key="b", numbers=NUMBERS):
@@ -24,7 +22,7 @@ def special_points(path) -> set[tuple[str, int, float]]:
     """Type, period of the branch and parameter of all special points of a file."""
     with vs.open(path) as data:
         own = data["special_branch"].values
-        types = [TYPES[code].name for code in data["special_type"].values]
+        types = words_of(data["special_type"])
         values = data["special_value"].values[:, 0].round(11)
         return set(zip(types, data["branch_period"].values[own].tolist(), values.tolist(), strict=True))
 
@@ -32,7 +30,7 @@ def special_points(path) -> set[tuple[str, int, float]]:
 @pytest.mark.slow
 def test_branches_of_a_sweep_pass_its_windows(few, tmp_path):  # noqa: F811
     """Every end of every window is a special point of a branch that was followed anew."""
-    run_continuation(scene(f"{{sweep: {few}}}", 5.1, 6.8), tmp_path / "b.h5")
+    vs.run(scene(f"{{sweep: {few}}}", 5.1, 6.8), tmp_path / "b.h5")
     found, windows = special_points(tmp_path / "b.h5"), vs.windows(few)
     assert len(windows) == 9
     for window in windows:
@@ -47,7 +45,7 @@ def test_branches_of_a_sweep_pass_its_windows(few, tmp_path):  # noqa: F811
 def test_the_largest_windows(few, tmp_path):  # noqa: F811
     """As wide as they are within the range, in which the free motion's window is a short one."""
     lo, hi, count = 5.1, 6.71, 3
-    run_continuation(scene(f"{{sweep: {few}, largest: {count}}}", lo, hi), tmp_path / "b.h5")
+    vs.run(scene(f"{{sweep: {few}, largest: {count}}}", lo, hi), tmp_path / "b.h5")
     windows = sorted(vs.windows(few), key=lambda one: max(min(one.hi, hi), lo) - max(min(one.lo, hi), lo))
     with vs.open(tmp_path / "b.h5") as data:
         assert sorted(data["branch_period"].values) == sorted(one.period for one in windows[-count:])
@@ -62,7 +60,7 @@ def test_the_number_that_a_file_has_may_be_left_out():
 @pytest.mark.slow
 def test_a_range_beside_the_orbits_of_the_sweep(few, tmp_path):  # noqa: F811
     """The window of period 13 begins at 6.59468; its first orbit in the sweep is at 6.596, outside of the range."""
-    run_continuation(scene(f"{{sweep: {few}}}", 6.59, 6.595), tmp_path / "b.h5")
+    vs.run(scene(f"{{sweep: {few}}}", 6.59, 6.595), tmp_path / "b.h5")
     with vs.open(tmp_path / "b.h5") as data:
         assert data["branch_period"].values.tolist() == [13]
         assert float(data["b"].min()) == pytest.approx(6.594680526617, abs=1e-11)
@@ -75,39 +73,38 @@ def test_the_row_of_a_plane(tmp_path):
     vs.sweep(SYSTEM, axes, transient=300, record=20, output=tmp_path / "plane.h5", workers=1)
     begin = f"{{sweep: {tmp_path / 'plane.h5'}}}"
     for omega in axes["omega"]:
-        run_continuation(scene(begin, 5, 9, numbers=NUMBERS.replace("0.63", str(omega))), tmp_path / f"{omega}.h5")
+        vs.run(scene(begin, 5, 9, numbers=NUMBERS.replace("0.63", str(omega))), tmp_path / f"{omega}.h5")
         with vs.open(tmp_path / f"{omega}.h5") as data:
             ends = data["special_value"].values[data["branch_begins"].values, 0]
             assert data.attrs["omega"] == omega
             assert np.abs(ends - vs.grazing(SYSTEM.replace(omega=omega)).b).min() < 1e-12
-    run_windows(tmp_path / "plane.h5", tmp_path / "windows.h5", "b")
-    for panel in figure(tmp_path / "plane.h5", options=PlotOptions(windows=tmp_path / "windows.h5")).axes[:2]:
+    vs.windows(tmp_path / "plane.h5", "b", tmp_path / "windows.h5")
+    for panel in vs.plot(tmp_path / "plane.h5", windows=tmp_path / "windows.h5").axes[:2]:
         drawn = [line.get_xydata() for line in panel.lines if line.get_gid() == "window end"]
         expected = [[omega, vs.grazing(SYSTEM.replace(omega=omega)).b] for omega in axes["omega"]]
         for place in expected:
             assert np.abs(np.concatenate(drawn) - place).max(axis=1).min() < 1e-12
     with pytest.raises(ValueError, match=r"plane\.h5 has no row with omega = 0\.64"):
-        run_continuation(scene(begin, 5, 9, numbers=NUMBERS.replace("0.63", "0.64")), tmp_path / "no.h5")
+        vs.run(scene(begin, 5, 9, numbers=NUMBERS.replace("0.63", "0.64")), tmp_path / "no.h5")
 
 
 @pytest.mark.slow
 def test_the_numbers_of_the_oscillator_are_those_of_the_special_point(few, tmp_path):  # noqa: F811
     """A branch in omega has the b of the special point, not that of the scene; so does one from that branch."""
-    run_continuation(scene(f"{{sweep: {few}}}", 6.5, 6.7), tmp_path / "b.h5")
+    vs.run(scene(f"{{sweep: {few}}}", 6.5, 6.7), tmp_path / "b.h5")
     with vs.open(tmp_path / "b.h5") as data:
-        types = [TYPES[code].name for code in data["special_type"].values]
-        at = types.index("fold")
+        at = words_of(data["special_type"]).index("fold")
         value = float(data["special_value"][at, 0])
     begin = f"{{branches: {tmp_path / 'b.h5'}, special: {at}}}"
-    run_continuation(scene(begin, 0.62, 0.64, "omega"), tmp_path / "omega.h5")
+    vs.run(scene(begin, 0.62, 0.64, "omega"), tmp_path / "omega.h5")
     with vs.open(tmp_path / "omega.h5") as data:
         assert data.attrs["b"] == value != 6.6
-        types = [TYPES[code].name for code in data["special_type"].values]
+        types = words_of(data["special_type"])
         omega = data["special_value"].values[:, 0]
         end = int(np.argmin(np.where(np.array(types) == "boundary", np.inf, np.abs(omega - 0.63))))
         held = float(omega[end])
     begin = f"{{branches: {tmp_path / 'omega.h5'}, special: {end}}}"
-    run_continuation(scene(begin, 6.5, 6.7), tmp_path / "again.h5")
+    vs.run(scene(begin, 6.5, 6.7), tmp_path / "again.h5")
     with vs.open(tmp_path / "again.h5") as data:
         assert data.attrs["omega"] == held
         along = data["b"].values[: int(data["branch_row_size"][0])]
@@ -130,18 +127,18 @@ def test_the_numbers_of_the_oscillator_are_those_of_the_special_point(few, tmp_p
 def test_what_does_not_fit_is_refused(few, tmp_path, numbers, start, stop, key, words):  # noqa: F811
     """And nothing is left behind."""
     with pytest.raises(ValueError, match=words):
-        run_continuation(scene(f"{{sweep: {few}}}", start, stop, key, numbers), tmp_path / "no.h5")
+        vs.run(scene(f"{{sweep: {few}}}", start, stop, key, numbers), tmp_path / "no.h5")
     assert not list(tmp_path.iterdir())
 
 
 def test_a_file_of_another_kind_is_refused(few, tmp_path):  # noqa: F811
-    run_continuation(scene("free", 6.5, 6.8, numbers=NUMBERS.replace("6.6", "6.75")), tmp_path / "free.h5")
+    vs.run(scene("free", 6.5, 6.8, numbers=NUMBERS.replace("6.6", "6.75")), tmp_path / "free.h5")
     with pytest.raises(ValueError, match=r"free\.h5 holds branches, no sweep"):
-        run_continuation(scene(f"{{sweep: {tmp_path / 'free.h5'}}}", 6.5, 6.8), tmp_path / "no.h5")
+        vs.run(scene(f"{{sweep: {tmp_path / 'free.h5'}}}", 6.5, 6.8), tmp_path / "no.h5")
     with pytest.raises(ValueError, match=r"few\.h5 holds no branches"):
-        run_continuation(scene(f"{{branches: {few}, special: 0}}", 6.5, 6.8), tmp_path / "no.h5")
+        vs.run(scene(f"{{branches: {few}, special: 0}}", 6.5, 6.8), tmp_path / "no.h5")
     with pytest.raises(vs.StoreError, match="there is no such file"):
-        run_continuation(scene("{sweep: none.h5}", 6.5, 6.8), tmp_path / "no.h5")
+        vs.run(scene("{sweep: none.h5}", 6.5, 6.8), tmp_path / "no.h5")
 
 
 @pytest.mark.slow
@@ -149,8 +146,8 @@ def test_another_sweep_is_another_run(few, tmp_path):  # noqa: F811
     """A run that began from one sweep does not go on from another one of the same name."""
     copy = tmp_path / "sweep.h5"
     copy.write_bytes(few.read_bytes())
-    run_continuation(scene(f"{{sweep: {copy}}}", 6.5, 6.8), tmp_path / "b.h5")
+    vs.run(scene(f"{{sweep: {copy}}}", 6.5, 6.8), tmp_path / "b.h5")
     vs.sweep(SYSTEM, {"b": [6.9, 7.0]}, transient=5, record=5, output=tmp_path / "other.h5", workers=1)
     copy.write_bytes((tmp_path / "other.h5").read_bytes())
     with pytest.raises(vs.StoreError, match="was made from something else"):
-        run_continuation(scene(f"{{sweep: {copy}}}", 6.5, 6.8), tmp_path / "b.h5", mode="resume")
+        vs.run(scene(f"{{sweep: {copy}}}", 6.5, 6.8), tmp_path / "b.h5", mode="resume")

@@ -1,23 +1,17 @@
 """Scenes with two numbers in `parameter`: curves in files, charts, and the edges of a plane."""
 
-import h5py
 import numpy as np
 import pytest
 import xarray as xr
+from support.contents import numbers, words_of
+from support.oscillators import PAPER, PAPER_NUMBERS
 from support.programs import main
 from support.scene_texts import parsed
-from support.windows import SYSTEM
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.curves.curve_search import Curves, compute_curve, seed_at
-from vibro_sweep.analysis.windows.edges import Plane, edges_of, passing
-from vibro_sweep.driver.run_continuation import run_continuation
-from vibro_sweep.model.bifurcations import CODIMENSION_TWO, CURVES
-from vibro_sweep.model.outcomes import EDGES
-from vibro_sweep.types import SpecialPoint
 
 NAMES, BOX = ("b", "omega"), ((2.5, 6), (0.58, 0.68))
-NUMBERS = "{mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 4}"
+NUMBERS = f"{{{PAPER_NUMBERS}, b: 4}}"
 ALONG = "{b: [2.5, 6], omega: [0.58, 0.68]}"
 
 
@@ -28,71 +22,32 @@ def text(begin="{itinerary: LR}", parameter=ALONG, more="depth: 0", numbers=NUMB
     return f"system: {numbers}\ncontinue:\n  from: {begin}\n  parameter: {parameter}\n  {more}\n"
 
 
-def pitchfork(omega=0.63) -> SpecialPoint:
-    orbit = vs.periodic_orbit(SYSTEM.replace(b=4, omega=omega), itinerary="LR")
-    branch = vs.continue_orbit(orbit, "b", (2.5, 6))
-    return next(special for special in branch.special if special.type == "pitchfork")
-
-
 @pytest.fixture(scope="module")
 def curve():
-    return vs.bifurcation_curve(pitchfork(), NAMES, BOX, virtual=False)
+    branch = vs.continue_orbit(vs.periodic_orbit(PAPER.replace(b=4), itinerary="LR"), "b", (2.5, 6))
+    return vs.bifurcation_curve(next(s for s in branch.special if s.type == "pitchfork"), NAMES, BOX, virtual=False)
 
 
 @pytest.fixture(scope="module")
 def file(tmp_path_factory):
     path = tmp_path_factory.mktemp("curves") / "lr.h5"
-    run_continuation(parsed(text(more="of: [pitchfork]\n  depth: 0"), "lr.yaml"), path)
+    vs.run(parsed(text(more="of: [pitchfork]\n  depth: 0"), "lr.yaml"), path)
     return path
-
-
-def numbers(path) -> dict[str, bytes]:
-    with h5py.File(path) as data:
-        return {name: data[name][()].tobytes() for name in data}
 
 
 def test_the_file_holds_the_curve(file, curve):
     with xr.open_dataset(file, engine="h5netcdf") as data:
         assert data.attrs["kind"] == "curves" and data.attrs["mu_m"] == 10 and "tau" not in data.attrs
-        assert [CURVES[code] for code in data["branch_type"].values] == ["pitchfork"]
+        assert words_of(data["branch_type"]) == ["pitchfork"]
         for name in (*NAMES, "x1", "v2", "multiplier_re", "residual", "unstable"):
             np.testing.assert_allclose(data[name], curve.points[name], rtol=1e-12, atol=1e-13)
         assert not data["status"].values.any() and data.sizes["impact"] == 2 * data.sizes["point"]
-        types = [CODIMENSION_TWO[code].name for code in data["special_type"].values]
-        assert types == [special.type for special in curve.special]
+        assert words_of(data["special_type"]) == [special.type for special in curve.special]
         at = data["special_point"].values
         for i, name in enumerate(NAMES):
             np.testing.assert_array_equal(data[name].values[at], data["special_value"].values[:, i])
-        expected = [vs.grazing(SYSTEM.replace(omega=float(omega))).b for omega in data["omega"].values]
+        expected = [vs.grazing(PAPER.replace(omega=float(omega))).b for omega in data["omega"].values]
         np.testing.assert_allclose(data["b_star"], expected, rtol=1e-13)
-
-
-def test_a_curve_is_known_from_another_of_its_points():
-    curves = Curves(NAMES, BOX, CURVES)
-    known = curves.run([seed_at(pitchfork(), NAMES)], 0, lambda _, tasks: [compute_curve(task) for task in tasks])
-    for omega in (0.612, 0.64):
-        assert curves.lies_on(known, seed_at(pitchfork(omega), NAMES))
-    beside = pitchfork()
-    moved = beside.orbit.system.replace(b=beside.parameters["b"] + 1e-5)
-    near = SpecialPoint("pitchfork", {"b": moved.b}, vs.periodic_orbit(moved, itinerary="LR"), beside.multipliers)
-    assert not curves.lies_on(known, seed_at(near, NAMES))
-
-
-def test_edges_between_which_a_line_passes():
-    """A straight line over a plane of 5 x 4 points, counted by hand: period 1 below it, 3 above it; 2 at one point."""
-    x, y = np.arange(5.0), np.arange(4.0)
-    period = np.where(y > 0.5 * x[:, None] + 0.6, 3, 1)
-    plane = Plane((x, y), period)
-    line = np.column_stack([[-1.0, 2.1, 6.0], [0.1, 1.65, 3.6]])
-    arrays = {"branch_type": 0, "branch_period": 3, "value": line, "unstable": np.array([0, 0, 0])}
-    edges = edges_of(plane)
-    assert len(edges.axis) == len(passing(plane, edges, arrays)) == 7
-    assert len(passing(plane, edges, arrays | {"branch_period": 2})) == 0  # the orbits of other regions
-    assert len(passing(plane, edges, arrays | {"unstable": np.array([1, 1, 1])})) == 0  # that bound no attractor
-    period[0, 3] = 2
-    edges = edges_of(plane)
-    found = passing(plane, edges, arrays)
-    assert len(edges.axis) == 9 and sorted(map(sorted, edges.periods[found].tolist())) == 7 * [[1, 3]]
 
 
 def test_a_point_of_codimension_two_of_a_file_is_where_a_scene_goes_on(tmp_path):
@@ -100,16 +55,15 @@ def test_a_point_of_codimension_two_of_a_file_is_where_a_scene_goes_on(tmp_path)
     parameter = "{b: [3, 3.9], omega: [0.6, 0.62]}"
     first = tmp_path / "first.h5"
     numbers = NUMBERS.replace("b: 4", "b: 3.8").replace("0.63", "0.615")
-    run_continuation(parsed(text(parameter=parameter, more="of: [pitchfork]\n  depth: 0", numbers=numbers)), first)
+    vs.run(parsed(text(parameter=parameter, more="of: [pitchfork]\n  depth: 0", numbers=numbers)), first)
     with vs.open(first) as data:
-        types = [CODIMENSION_TWO[code].name for code in data["special_type"].values]
-        at = types.index("degenerate_flip")
+        at = words_of(data["special_type"]).index("degenerate_flip")
         place = data["special_value"].values[at].tolist()
     begin = f"{{branches: {first}, special: {at}}}"
     second = tmp_path / "second.h5"
-    run_continuation(parsed(text(begin, parameter, "depth: 0", numbers)), second)
+    vs.run(parsed(text(begin, parameter, "depth: 0", numbers)), second)
     with vs.open(second) as data:
-        assert "pitchfork" in [CURVES[code] for code in data["branch_type"].values]
+        assert "pitchfork" in words_of(data["branch_type"])
         assert np.abs(data["special_value"].values - place).max(axis=1).min() < 1e-10
 
 
@@ -146,7 +100,7 @@ def test_commands(file, tmp_path, monkeypatch, capsys):
 def test_charts_over_a_plane(file, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     vs.sweep(
-        SYSTEM, {"omega": np.linspace(0.6, 0.66, 4), "b": np.linspace(3, 5, 5)}, transient=30, record=10,
+        PAPER, {"omega": np.linspace(0.6, 0.66, 4), "b": np.linspace(3, 5, 5)}, transient=30, record=10,
         observe=("section", "lyapunov"), output="plane.h5", workers=1,
     ).close()  # fmt: skip
     assert main(["plot", str(file), "--over", "plane.h5", "-o", "over.svg"]) == 0
@@ -173,8 +127,8 @@ def test_charts_over_a_plane(file, tmp_path, monkeypatch, capsys):
 
 def test_real_parts_are_parts_of_the_whole_curve():
     """The graze that ends a window of period 8: between the two double grazes where it is a motion."""
-    state = vs.simulate(SYSTEM.replace(b=5.6), (0, 0, 0, 0), 2000).section[-1]
-    orbit = vs.periodic_orbit(SYSTEM.replace(b=5.6), state, 8)
+    state = vs.simulate(PAPER.replace(b=5.6), (0, 0, 0, 0), 2000).section[-1]
+    orbit = vs.periodic_orbit(PAPER.replace(b=5.6), state, 8)
     graze = next(s for s in vs.continue_orbit(orbit, "b", (5, 6)).special if s.type == "graze")
     whole = vs.bifurcation_curve(graze, NAMES, ((5, 7), (0.62, 0.65)))
     real = vs.bifurcation_curve(graze, NAMES, ((5, 7), (0.62, 0.65)), virtual=False)
@@ -191,10 +145,10 @@ def test_it_depends_neither_on_interruptions_nor_on_workers(tmp_path):
             raise KeyboardInterrupt
 
     scene = parsed(text(more="depth: 1"), "lr.yaml")
-    run_continuation(scene, tmp_path / "one.h5")
+    vs.run(scene, tmp_path / "one.h5")
     with pytest.raises(KeyboardInterrupt):
-        run_continuation(scene, tmp_path / "two.h5", progress=stop)
-    run_continuation(scene, tmp_path / "two.h5", mode="resume", workers=2)
+        vs.run(scene, tmp_path / "two.h5", progress=stop)
+    vs.run(scene, tmp_path / "two.h5", mode="resume", workers=2)
     assert numbers(tmp_path / "two.h5") == numbers(tmp_path / "one.h5")
     with vs.open(tmp_path / "one.h5") as data:
         words = [
@@ -212,13 +166,14 @@ def test_edges_of_a_plane(tmp_path):
     """Most have a curve; where both orbits are said to be stable at both points, simulation carries them across."""
     plane = tmp_path / "plane.h5"
     keys = {"omega": np.linspace(0.64, 0.664, 7), "b": np.linspace(5.0, 7.2, 10)}
-    with vs.sweep(SYSTEM, keys, transient=1500, record=64, output=plane, workers=1) as data:
+    with vs.sweep(PAPER, keys, transient=1500, record=64, output=plane, workers=1) as data:
         period = data["period"].values
         states = np.stack([data[name].isel(sample=-1).values for name in ("x1", "v1", "x2", "v2")], -1)
     parameter = "{omega: [0.63, 0.67], b: [4, 8]}"
-    run_continuation(parsed(text(f"{{sweep: {plane}}}", parameter, "depth: 0")), tmp_path / "edges.h5")
+    vs.run(parsed(text(f"{{sweep: {plane}}}", parameter, "depth: 0")), tmp_path / "edges.h5")
     with vs.open(tmp_path / "edges.h5") as data:
-        one, other, reason = (data[name].values for name in ("edge_from", "edge_to", "edge_reason"))
+        one, other = (data[name].values for name in ("edge_from", "edge_to"))
+        reason, names = data["edge_reason"].values, np.array(words_of(data["edge_reason"]))
         assert (data["edge_curve"].values[reason == 0] >= 0).all() and data.sizes["edge"] > 25
         assert (reason == 0).mean() > 0.7
 
@@ -229,11 +184,11 @@ def test_edges_of_a_plane(tmp_path):
         for share in np.linspace(0, 1, 41):
             omega, b = map(float, (1 - share) * here + share * there)
             state = np.append(np.clip(state[0], -b, b), state[1:])
-            flown = vs.simulate(SYSTEM.replace(omega=omega, b=b), state, 3000 if share == 1 else 300).section
+            flown = vs.simulate(PAPER.replace(omega=omega, b=b), state, 3000 if share == 1 else 300).section
             state = flown[-1]
         return bool(np.abs(state - flown[-1 - period[place]]).max() < 1e-6 * np.abs(state).max())
 
-    both = np.flatnonzero(reason == list(EDGES).index("stable_at_both"))
+    both = np.flatnonzero(names == "stable_at_both")
     assert len(both)
     for a, b in zip(one[both], other[both], strict=True):
         for ends in ((a, b), (b, a)):

@@ -11,14 +11,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 from support import ROOT
+from support.oscillators import PAPER
 
 import vibro_sweep as vs
-from vibro_sweep.model.files import FileError
-from vibro_sweep.store.opening import ForeignError, MissingError
 
 pytest.importorskip("distributed")  # whose tblib changes how every error is pickled
 
-SYSTEM = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=0.4)
+SYSTEM = PAPER.replace(b=0.4)
 
 
 def errors() -> list[type[Exception]]:
@@ -34,17 +33,17 @@ def errors() -> list[type[Exception]]:
 
 
 ARGUMENTS = {
-    vs.ParameterError: ("R", 2, "between 0 and 1"),
-    vs.SceneError: ("scene", ["R: too large"]),
-    MissingError: (Path("x"),),
-    ForeignError: (Path("x"), "h5netcdf=1.8.2"),
-    FileError: (Path("x"), "cannot be read"),
+    "ParameterError": ("R", 2, "between 0 and 1"),
+    "SceneError": ("scene", ["R: too large"]),
+    "MissingError": (Path("x"),),
+    "ForeignError": (Path("x"), "h5netcdf=1.8.2"),
+    "FileError": (Path("x"), "cannot be read"),
 }
 
 
 @pytest.mark.parametrize("kind", errors(), ids=lambda kind: kind.__name__)
 def test_every_error_of_the_package(kind):
-    error = kind(*ARGUMENTS.get(kind, ("what is wrong",)))
+    error = kind(*ARGUMENTS.get(kind.__name__, ("what is wrong",)))
     for again in (pickle.loads(pickle.dumps(error)), copy.copy(error), copy.deepcopy(error)):
         assert type(again) is kind and str(again) == str(error) and vars(again) == vars(error)
 

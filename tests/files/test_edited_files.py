@@ -8,13 +8,13 @@ import h5py
 import numpy as np
 import pytest
 from support import sample, slow_cases
-from support.files import EDITS, LINKS, SCENE, described, elsewhere, refused, seen
+from support.changes import LINKS, elsewhere, set_text
+from support.contents import arrays_of, described
+from support.edits_of_sweeps import EDITS
+from support.files import SCENE, refused, seen
 from support.programs import main
-from support.scenes import arrays_of
 
 import vibro_sweep as vs
-from vibro_sweep.store import parts
-from vibro_sweep.store.attributes import set_text, set_texts
 
 # What is not ours in a file
 
@@ -54,26 +54,6 @@ def test_no_number_is_read_from_elsewhere(folder, capsys, how, name):
     assert seen(folder) == before
 
 
-@pytest.mark.parametrize("how", LINKS)
-def test_no_number_is_written_elsewhere(folder, capsys, how):
-    """By a part whose skeleton leads to another file, with all its checksums right."""
-    shutil.copy("x.h5", "other.h5")
-    Path("victim").write_bytes(bytes(range(256)) * 20)
-    with parts.open_regular(Path("y.h5.part")) as file, open("skeleton.h5", "xb") as copy:
-        head = parts.read_head(file)
-        parts.copy_skeleton(file, head, copy)
-        file.seek(head.start + head.length)
-        rest = file.read()
-    with h5py.File("skeleton.h5", "a") as file:
-        elsewhere(file, "x1", how)
-    skeleton = Path("skeleton.h5").read_bytes()
-    Path("y.h5.part").write_bytes(parts.new_head(skeleton, None, head.run_id).packed() + skeleton + rest)
-    before = seen(folder)
-    for arguments in (["info", "y.h5.part"], ["plot", "y.h5.part"], ["run", "scene.yaml", "-o", "y.h5", "--resume"]):
-        refused(capsys, arguments, "y.h5.part")
-    assert seen(folder) == before
-
-
 # Files that somebody has edited
 
 
@@ -93,7 +73,7 @@ def test_a_missing_dataset_that_is_not_missed_by_the_file_itself(folder, capsys)
     with h5py.File("x.h5", "a") as file:
         del file["x1"]
         names = [name.decode() for name in file.attrs["quantities"] if name != b"x1"]
-        set_texts(file, "quantities", names)
+        set_text("quantities", names)(file)
     refused(capsys, ["run", "scene.yaml", "-o", "x.h5", "--resume"], "it has no x1")
 
 
@@ -125,7 +105,7 @@ BOMB = "a: &a {x: 1}\n" + "".join(
 )
 def test_a_stored_scene_of_nonsense(folder, capsys, text):
     with h5py.File("x.h5", "a") as file:
-        set_text(file, "scene", text)
+        set_text("scene", text)(file)
     for command in ("info", "plot"):
         assert main([command, "x.h5"]) == 0
     assert main(["run", "scene.yaml", "-o", "x.h5", "--resume"]) == 2

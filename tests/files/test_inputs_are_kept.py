@@ -7,13 +7,13 @@ from pathlib import Path
 import h5py
 import pytest
 from support import sample, slow_cases
+from support.contents import bytes_in, numbers
+from support.oscillators import PAPER_NUMBERS
 from support.programs import main
 
 import vibro_sweep as vs
-from vibro_sweep.driver.run_continuation import run_continuation
-from vibro_sweep.driver.windows import run_windows
 
-SYSTEM = "system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8}\n"
+SYSTEM = f"system: {{{PAPER_NUMBERS}}}\n"
 SWEEP = (
     SYSTEM
     + """
@@ -36,8 +36,8 @@ def made(tmp_path_factory):
         Path("s.yaml").write_text(SWEEP)
         Path("br.yaml").write_text(FROM_SWEEP)
         vs.run(vs.load_scene("s.yaml"), "s.h5")
-        run_continuation(vs.load_scene("br.yaml"), "br.h5")
-        run_windows("s.h5", "w.h5")
+        vs.run(vs.load_scene("br.yaml"), "br.h5")
+        vs.windows("s.h5", output="w.h5")
     finally:
         os.chdir(before)
     return folder
@@ -54,10 +54,6 @@ def folder(made, tmp_path, monkeypatch):
     os.link("s.yaml", "scene.h5")
     Path("deep").mkdir()
     return tmp_path
-
-
-def contents(folder) -> dict[str, bytes]:
-    return {str(path): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
 
 
 @pytest.mark.parametrize(
@@ -82,15 +78,15 @@ def contents(folder) -> dict[str, bytes]:
     ),
 )
 def test_a_command_leaves_its_inputs_alone(folder, capsys, command):
-    before = contents(folder)
+    before = bytes_in(folder)
     assert main(command.split()) == 2
     error = capsys.readouterr().err
     assert command.split()[3] in error and "Traceback" not in error
-    assert contents(folder) == before
+    assert bytes_in(folder) == before
 
 
 def test_python_leaves_its_inputs_alone(folder):
-    before = contents(folder)
+    before = bytes_in(folder)
     scene, branches = vs.load_scene("s.yaml"), vs.load_scene("br.yaml")
     for one in (scene, scene.replace(record=30)):
         for output in ("s.yaml", "scene.h5"):
@@ -98,28 +94,28 @@ def test_python_leaves_its_inputs_alone(folder):
                 vs.run(one, output, mode="overwrite")
     for call in (
         lambda: vs.run(scene, "new/"),
-        lambda: run_continuation(branches, "new/"),
-        lambda: run_windows("s.h5", "new/"),
+        lambda: vs.run(branches, "new/"),
+        lambda: vs.windows("s.h5", output="new/"),
     ):
         with pytest.raises(
             ValueError, match="output: 'new/' is not allowed; it must be the path of a file, and of no folder"
         ):
             call()
     with pytest.raises(vs.StoreError, match=r"this run reads s\.h5"):
-        run_continuation(branches, "hard.h5", mode="overwrite")
+        vs.run(branches, "hard.h5", mode="overwrite")
     with pytest.raises(vs.StoreError, match=r"this run reads s\.h5"):
-        run_windows("s.h5", "hard.h5", mode="overwrite")
-    assert contents(folder) == before
+        vs.windows("s.h5", output="hard.h5", mode="overwrite")
+    assert bytes_in(folder) == before
 
 
 def test_a_picture_replaces_nothing_that_it_shows(folder, capsys):
     for name in ("s.h5", "w.h5"):
         os.link(name, f"{name}.png")
-    before = contents(folder)
+    before = bytes_in(folder)
     for output in ("s.h5.png", "w.h5.png"):
         assert main(["plot", "s.h5", "--windows", "w.h5", "-o", output, "--overwrite"]) == 2
         assert output in capsys.readouterr().err
-    assert contents(folder) == before
+    assert bytes_in(folder) == before
 
 
 @pytest.mark.parametrize(
@@ -172,11 +168,6 @@ def test_an_edited_file_is_refused(folder, capsys, name, edit):
         assert "damaged" in said.out + said.err and name in said.out + said.err
     with pytest.raises(vs.StoreError, match="damaged"):
         vs.open(name)
-
-
-def numbers(path) -> dict[str, bytes]:
-    with h5py.File(path) as data:
-        return {name: data[name][()].tobytes() for name in data}
 
 
 def flip(path, dataset) -> None:

@@ -4,7 +4,7 @@ import os
 
 import h5py
 import pytest
-from support.files import described
+from support.contents import described
 from support.stored import SWEEP, broken_off, scene_of
 
 import vibro_sweep as vs
@@ -62,13 +62,12 @@ def test_resume_of_nothing_is_a_run(path):
     assert "3 of 3" in described(path)
 
 
-def test_resume_of_a_complete_file_changes_nothing(path, monkeypatch):
+def test_resume_of_a_complete_file_changes_nothing(path):
     vs.run(scene_of(SWEEP), path)
     before, written = path.read_bytes(), path.stat().st_mtime_ns
-    monkeypatch.setattr("vibro_sweep.driver.sweep.orbit_cost", None)  # nothing is computed
     seen = []
     report = vs.run(scene_of(SWEEP), path, mode="resume", progress=lambda *progress: seen.append(progress))
-    assert (report.points, report.bad, seen) == (3, 0, [(3, 3)])
+    assert (report.points, report.bad, report.computed, seen) == (3, 0, 0, [(3, 3)])
     assert path.read_bytes() == before and path.stat().st_mtime_ns == written
     assert os.listdir(path.parent) == [path.name]
 

@@ -12,14 +12,14 @@ from support.kinds_of_files import KINDS, RAGGED
 from support.programs import main
 
 import vibro_sweep as vs
-from vibro_sweep.store.attributes import SCALES
-from vibro_sweep.store.datasets import _NO_VARIABLE
 
 pytestmark = pytest.mark.slow  # one file of each kind is made
 
 NAME = re.compile("[A-Za-z][A-Za-z0-9_]*")  # CF 2.3
 UNITS = ("1", "rad")  # what is used here of UDUNITS
-LENGTH = _NO_VARIABLE.partition("{")[0].encode()  # of netCDF's dimensions without a variable
+LENGTH = b"This is a netCDF dimension but not a netCDF variable"  # the name of those
+# how HDF5 joins datasets and their dimensions, and how CF names coordinates
+SCALES = ("CLASS", "NAME", "DIMENSION_LIST", "REFERENCE_LIST", "coordinates")
 
 
 def lengths_and_variables(file):

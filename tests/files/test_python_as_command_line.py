@@ -1,18 +1,18 @@
 """What the command line does, Python does by the same words."""
 
-import h5py
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
 from support import ROOT, sample, slow_cases
+from support.contents import numbers
+from support.oscillators import PAPER, PAPER_NUMBERS
 from support.programs import main
 
 import vibro_sweep as vs
 from vibro_sweep.types import Continuation, Scene
 
-PAPER = dict(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=6.6)
-NUMBERS = "{mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 6.6}"
+NUMBERS = f"{{{PAPER_NUMBERS}, b: 6.6}}"
 SWEEP = f"""
 system: {NUMBERS}
 sweep: {{b: {{start: 6.5, stop: 6.9, num: 21}}}}
@@ -37,11 +37,6 @@ def folder(tmp_path_factory):
     vs.run(vs.load_scene(path / "lr.yaml"), path / "lr.h5")
     vs.windows(path / "sweep.h5", output=path / "sweep.windows.h5")
     return path
-
-
-def numbers(path) -> dict[str, bytes]:
-    with h5py.File(path) as data:
-        return {name: data[name][()].tobytes() for name in data}
 
 
 @pytest.mark.parametrize("path", sorted((ROOT / "configs").rglob("*.yaml")), ids=lambda path: path.stem)
@@ -136,7 +131,7 @@ def test_windows_of_a_part_are_not_taken_for_those_of_the_whole(folder, tmp_path
 
 
 def test_a_row_of_a_plane_is_the_sweep_at_its_value():
-    system = vs.System(**PAPER)
+    system = PAPER.replace(b=6.6)
     axes = {"b": np.linspace(6.6, 6.7, 5), "R": [0.7, 0.8]}
     plane = vs.sweep(system, axes, observe=["section"], transient=500, record=60)
     row = vs.sweep(system.replace(R=0.7), {"b": axes["b"]}, observe=["section"], transient=500, record=60)
@@ -146,7 +141,7 @@ def test_a_row_of_a_plane_is_the_sweep_at_its_value():
 def test_what_is_not_a_sweep_has_no_windows(folder):
     with vs.open(folder / "lr.h5") as data, pytest.raises(ValueError, match="holds branches, not a sweep"):
         vs.windows(data)
-    built = vs.sweep(lambda b: vs.System(**PAPER | {"b": b}), {"b": [6.5, 6.6]}, observe=["section"], record=2)
+    built = vs.sweep(lambda b: PAPER.replace(b=b), {"b": [6.5, 6.6]}, observe=["section"], record=2)
     with pytest.raises(ValueError, match="type: 'build' is not allowed"):
         vs.windows(built)
     with pytest.raises(TypeError, match="data: 3 is not allowed"):

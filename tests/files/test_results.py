@@ -8,12 +8,11 @@ import sys
 import numpy as np
 import pytest
 from support import slow_cases
+from support.oscillators import PAPER, PAPER_NUMBERS
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.branches.branch import not_followed
-from vibro_sweep.analysis.periodic.orbit_portrait import portrait
 
-SYSTEM = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4.0)
+SYSTEM = PAPER.replace(b=4.0)
 BALL = vs.Oscillator.named("one_mass", k=0, zeta=0.0, F=1.0, omega=1.0, R=0.5, b=0.0, constant=-0.5, stops="left")
 
 
@@ -149,7 +148,7 @@ def test_windows(tmp_path):
 @pytest.mark.slow
 def test_the_file_of_a_scene_gives_a_list(tmp_path):
     (tmp_path / "s.yaml").write_text(
-        "system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 2.0}\n"
+        f"system: {{{PAPER_NUMBERS}, b: 2.0}}\n"
         "continue: {from: {itinerary: LR}, parameter: {b: [0.3, 6.8]}, depth: 1}\n"
     )
     vs.run(vs.load_scene(tmp_path / "s.yaml"), tmp_path / "s.h5")
@@ -161,16 +160,6 @@ def test_the_file_of_a_scene_gives_a_list(tmp_path):
         same_specials(other.branch.special, one.special)
 
 
-def test_a_branch_that_could_not_be_followed(orbit, tmp_path):
-    """It has one point, at a value that may be the last one that is allowed."""
-    elastic = vs.periodic_orbit(SYSTEM.replace(R=1.0), itinerary="R")
-    for one, name in ((orbit, "b"), (elastic, "R")):
-        branch = not_followed(one, name)
-        branch.save(tmp_path / f"{name}.h5")
-        again = vs.load(tmp_path / f"{name}.h5")
-        assert again.status == "failed" and again.points.identical(branch.points) and repr(again) == repr(branch)
-
-
 @pytest.mark.slow
 def test_a_number_that_breaks_the_symmetry(tmp_path):
     """At one value of the branch the oscillator is symmetric: there mirror images are not told either."""
@@ -179,7 +168,7 @@ def test_a_number_that_breaks_the_symmetry(tmp_path):
     branch.save(tmp_path / "b.h5")
     assert vs.load(tmp_path / "b.h5").points.identical(branch.points)
     (tmp_path / "s.yaml").write_text(
-        "system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 2, offset: 0}\n"
+        f"system: {{{PAPER_NUMBERS}, b: 2, offset: 0}}\n"
         "continue: {from: {itinerary: LR}, parameter: {offset: [-0.2, 0.2]}, depth: 0}\n"
     )
     vs.run(vs.load_scene(tmp_path / "s.yaml"), tmp_path / "s.h5")
@@ -203,8 +192,9 @@ def test_options_that_the_picture_of_an_orbit_does_not_have_are_refused(orbit, t
 @pytest.mark.parametrize("word, stops", [("R", 1), ("LR", 2)])
 def test_a_small_portrait_is_the_orbit(word, stops):
     """It reaches its stops, never passes them, and jumps there by (1 + R) times the speed."""
-    orbit = vs.periodic_orbit(SYSTEM, itinerary=word)
-    walls, path = re.findall(r'<path d="(.*?)"', portrait(orbit))
+    branch = vs.continue_orbit(vs.periodic_orbit(SYSTEM, itinerary=word), "b", (3.95, 4.05))
+    orbit = branch.special[0].orbit
+    walls, path = re.findall(r'<path d="(.*?)"', branch._repr_html_())[:2]
     walls = [int(place) for place in re.findall(r"M(\d+) 0v160", walls)]
     start, steps = path.removeprefix("M").split("l")
     x, y = np.cumsum(
@@ -216,7 +206,6 @@ def test_a_small_portrait_is_the_orbit(word, stops):
     pixel = (160 - 2 * 8) / np.ptp(np.append(v, orbit.impacts["v1"]))
     jumps = np.diff(y)[(np.diff(x) == 0) & (x[1:] == walls[1])]
     assert np.abs(jumps).max() == pytest.approx((1 + SYSTEM.R) * np.abs(orbit.impacts["v1"]).max() * pixel, abs=2)
-    assert portrait(vs.periodic_orbit(SYSTEM.replace(b=50.0), itinerary="R")) == ""
 
 
 def test_an_orbit_without_impacts_is_drawn():

@@ -4,15 +4,13 @@ import pickle
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 from support import sample
-from support.files import described
+from support.contents import described
 from support.stored import ALL, IMPACTS, LYAPUNOV, PLANE, SECTION, SWEEP, broken_off, scene_of
 
 import vibro_sweep as vs
-from vibro_sweep import store
-from vibro_sweep.driver import blocks, compute
-from vibro_sweep.driver.provenance import provenance
 
 
 @pytest.mark.parametrize("part", sample(1, [False, True]))
@@ -27,33 +25,32 @@ def test_what_is_opened_can_be_copied_and_sent(path, part):
 
 
 def test_a_file_that_is_being_written_can_be_read(path):
-    scene = scene_of(SWEEP)
-    with store.writer(store.sweep_run(scene, provenance()), path, "new"):
-        part = f"{path}.part"
-        assert "computed     0 of 3" in in_another_process(
-            f"from vibro_sweep.cli.info import examine; print(examine('{part}').text)"
-        )
-        assert "{'b': 3, 'sample': 4}" in in_another_process(
-            f"import vibro_sweep as v; print(dict(v.open('{part}').sizes))"
-        )
+    """By another process."""
+    part, printed = f"{path}.part", []
+
+    def read(done, _):
+        if done == 0:
+            printed.append(in_another_process("-m", "vibro_sweep", "info", part))
+            printed.append(in_another_process("-c", f"import vibro_sweep as v; print(dict(v.open('{part}').sizes))"))
+
+    vs.run(scene_of(SWEEP), path, progress=read)
+    assert "computed     0 of 3" in printed[0] and "{'b': 3, 'sample': 4}" in printed[1]
 
 
-def in_another_process(code):
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+def in_another_process(*arguments):
+    done = subprocess.run([sys.executable, *arguments], capture_output=True, text=True, check=False)
     return done.stdout + done.stderr
 
 
 @pytest.mark.parametrize("starts", [1, 2])
 def test_what_is_missing_and_what_is_done(path, starts):
+    """Whole points, of all their starts; a run that goes on computes the others alone."""
     scene = scene_of(PLANE + f"start: {{random: {starts}}}\nobserve: [impacts]")
-    (*_, last) = blocks.blocks(scene, points_per_block=2)
-    with store.writer(store.sweep_run(scene, provenance()), path, "new") as file:
-        everything = (slice(None), slice(None))
-        assert file.done() == 0 and file.missing(everything)
-        file.write(*compute.compute(last))
-        assert file.done() == starts
-        assert file.missing(everything) and file.missing((slice(1, 2), slice(1, 3)))
-        assert not file.missing((slice(1, 2), slice(2, 3)))
+    with vs.open(broken_off(scene, path)) as data:
+        done = data["status"].values.reshape(6, starts) != -1
+        assert done.all(axis=1).tolist() == done.any(axis=1).tolist() and 0 < done.sum() < 6 * starts
+        assert np.isnan(data["sticking_time"].values.reshape(6, starts)[~done]).all()
+    assert vs.run(scene, path, mode="resume").computed == 6 * starts - done.sum()
 
 
 def test_describe_says_how_far_it_is(path):

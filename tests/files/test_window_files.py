@@ -1,32 +1,24 @@
 """The file of a sweep's windows: what is in it, that it does not depend on how it was made, and the commands."""
 
+import shutil
 import subprocess
 import sys
 
-import h5py
 import numpy as np
 import pytest
 import xarray as xr
-from support.programs import main
-from support.windows import few  # noqa: F401
+from support.contents import numbers, words_of
+from support.programs import ended, main
+from support.windows import SYSTEM, few  # noqa: F401
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.periodic.itinerary import word
-from vibro_sweep.driver.windows import run_windows
-from vibro_sweep.model.bifurcations import TYPES
 
 
 @pytest.fixture(scope="module")
 def file(few, tmp_path_factory):  # noqa: F811
     path = tmp_path_factory.mktemp("file") / "few.windows.h5"
-    run_windows(few, path)
+    vs.windows(few, output=path)
     return path
-
-
-def numbers(path) -> dict[str, bytes]:
-    """All numbers of a file, bit for bit."""
-    with h5py.File(path) as data:
-        return {name: data[name][()].tobytes() for name in data}
 
 
 def test_it_holds_the_windows(few, file):  # noqa: F811
@@ -37,14 +29,15 @@ def test_it_holds_the_windows(few, file):  # noqa: F811
         np.testing.assert_array_equal(data["window_hi"], [window.hi for window in windows])
         np.testing.assert_array_equal(data["window_period"], [window.period for window in windows])
         np.testing.assert_array_equal(data["window_symmetric"], [window.symmetric for window in windows])
+        types = words_of(data["special_type"])
         first = np.append(0, np.cumsum(data["branch_row_size"].values * data["branch_impacts"].values))
         for w, window in enumerate(windows):
             branch = int(data["window_branch"][w])
             sides = data["impact_side"].values[first[branch] :][: int(data["branch_impacts"][branch])]
-            assert word(sides) == window.itinerary
+            assert "".join("R" if side > 0 else "L" for side in sides) == window.itinerary
             for name, special in (("window_lower", window.lower), ("window_upper", window.upper)):
                 at = int(data[name][w])
-                assert TYPES[int(data["special_type"][at])].name == special.type
+                assert types[at] == special.type
                 assert float(data["special_value"][at, 0]) == special.parameters["b"]
                 assert float(data["b"][int(data["special_point"][at])]) == special.parameters["b"]
         flags = data["special_type"].attrs
@@ -63,66 +56,61 @@ def test_a_run_that_is_interrupted_goes_on(few, file, tmp_path):  # noqa: F811
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        run_windows(few, tmp_path / "w.h5", progress=stop)
+        vs.windows(few, output=tmp_path / "w.h5", progress=stop)
     assert not (tmp_path / "w.h5").exists()
     with pytest.raises(vs.StoreError, match="is a run of windows that is not complete"):
         vs.open(tmp_path / "w.h5.part")
     with pytest.raises(vs.StoreError, match="interrupted run; `resume` continues it"):
-        run_windows(few, tmp_path / "w.h5")
-    run_windows(few, tmp_path / "w.h5", mode="resume")
+        vs.windows(few, output=tmp_path / "w.h5")
+    vs.windows(few, output=tmp_path / "w.h5", mode="resume")
     first, second = numbers(file), numbers(tmp_path / "w.h5")
     assert first == second
     assert not (tmp_path / "w.h5.part").exists()
 
 
 @pytest.mark.slow
-def test_interrupted_when_the_file_has_its_name(few, file, tmp_path, monkeypatch):  # noqa: F811
+def test_interrupted_when_the_file_has_its_name(few, file, tmp_path):  # noqa: F811
     """And its part is still there: nothing is followed again."""
+    part = tmp_path / "w.h5.part"
 
-    def stop(_):
-        raise KeyboardInterrupt
+    def copy(done, total):
+        if done == total:
+            shutil.copy(part, tmp_path / "copy")
 
-    with monkeypatch.context() as patch:
-        patch.setattr("vibro_sweep.store.appending.LockedPart.remove", stop)
-        with pytest.raises(KeyboardInterrupt):
-            run_windows(few, tmp_path / "w.h5")
+    vs.windows(few, output=tmp_path / "w.h5", progress=copy)
     made = (tmp_path / "w.h5").read_bytes()
-    assert (tmp_path / "w.h5.part").exists()
-    assert run_windows(few, tmp_path / "w.h5", mode="resume") is None
+    (tmp_path / "copy").rename(part)
+    assert ended("windows", few, "-o", tmp_path / "w.h5", "--resume", "--quiet").status == 0
     assert [path.name for path in tmp_path.iterdir()] == ["w.h5"] and (tmp_path / "w.h5").read_bytes() == made
     assert numbers(tmp_path / "w.h5") == numbers(file)
 
 
 @pytest.mark.slow
 def test_two_workers_make_the_same_file(few, file, tmp_path):  # noqa: F811
-    run_windows(few, tmp_path / "w.h5", workers=2)
+    vs.windows(few, output=tmp_path / "w.h5", workers=2)
     assert numbers(tmp_path / "w.h5") == numbers(file)
 
 
 @pytest.mark.slow
 def test_dask_makes_the_same_file(few, file, tmp_path):  # noqa: F811
     distributed = pytest.importorskip("distributed")
-    from vibro_sweep.driver.cluster import ClusterExecutor
-
-    with (
-        distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster,
-        distributed.Client(cluster) as client,
-        ClusterExecutor(client) as executor,
-    ):
-        run_windows(few, tmp_path / "w.h5", executor=executor)
+    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster:
+        words = ["-o", tmp_path / "w.h5", "--quiet", "--scheduler", cluster.scheduler_address]
+        assert ended("windows", few, *words).status == 0
     assert numbers(tmp_path / "w.h5") == numbers(file)
 
 
 @pytest.mark.slow
-def test_windows_are_found_without_xarray(few):  # noqa: F811
+def test_windows_are_found_without_xarray(few, tmp_path):  # noqa: F811
     """Its import takes as long as all other parts of the program together."""
     code = (
-        "import sys, vibro_sweep.driver.windows as w; from vibro_sweep import store;"
-        "file = store.contents(sys.argv[1]); data = file.__enter__(); w.rows_in(data, None);"
-        "print(sorted({'xarray', 'pandas', 'dask'} & set(sys.modules)))"
+        "import atexit, sys; from vibro_sweep.__main__ import program;"
+        "atexit.register(lambda: print('imported', sorted({'xarray', 'pandas', 'dask'} & set(sys.modules))));"
+        "program()"
     )
-    done = subprocess.run([sys.executable, "-c", code, few], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == "[]"
+    command = [sys.executable, "-c", code, "windows", few, "-o", tmp_path / "w.h5", "--quiet"]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-1] == "imported []"
 
 
 @pytest.mark.slow
@@ -150,7 +138,7 @@ def test_commands(few, tmp_path, monkeypatch, capsys):  # noqa: F811
     assert main(["plot", str(few), "--windows", "few.windows.h5", *part]) == 0
     assert main(["windows", str(few)]) == 0  # complete already
     assert main(["run", "few.windows.h5"]) == 2
-    other = vs.sweep(vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=6.6), {"b": [6.9, 7.0]},
+    other = vs.sweep(SYSTEM, {"b": [6.9, 7.0]},
                      transient=5, record=5, output="other.h5", workers=1)  # fmt: skip
     other.close()
     capsys.readouterr()

@@ -7,13 +7,18 @@ import pytest
 from support import ROOT
 from support.scene_texts import parsed
 
+import vibro_sweep as vs
 from vibro_sweep.cli import reference
 from vibro_sweep.driver.blocks import plan_of
 from vibro_sweep.engine.records import POINT, new_results, result_of
 from vibro_sweep.engine.simd.jit import ENGINE, SHARED
+from vibro_sweep.model.catalogue import OF_A_SYSTEM
 from vibro_sweep.model.dimensions import DIMENSIONS
+from vibro_sweep.model.models import MODELS
 from vibro_sweep.model.observables import VARIABLES
 from vibro_sweep.model.parameters import NAMES
+from vibro_sweep.model.state import MOST_MASSES
+from vibro_sweep.scene import resolved_numbers
 
 PAPER = "system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0.1, omega: 0.63, R: 0.8, b: 6.6}"
 NEEDS = {"section": "states", "lyapunov": "states lyapunov", "impacts": "impacts", "convergence": "states lyapunov",
@@ -58,3 +63,24 @@ def test_kernels_compile_in_only_what_names_their_cache():
                 used = {name.id for name in ast.walk(node) if isinstance(name, ast.Name)}
                 assert {homes[name] for name in used & homes.keys()} <= {*SHARED}, (path, node.name)
     assert jitted > 100
+
+
+def test_every_example_has_its_numbers():
+    """What a file would say of each scene that comes with the package."""
+    scenes = sorted(path for path in (ROOT / "configs").rglob("*.yaml") if path.parent.name != "branches")
+    assert len(scenes) > 10
+    for path in scenes:
+        scene = vs.load_scene(path)
+        kinds = (resolved_numbers.attributes, resolved_numbers.dimensions, resolved_numbers.matrices)
+        known = {name for numbers in kinds for name in numbers(scene)} | {*scene.sweep}
+        needed = {name for name, value in scene.system.numbers.items() if value not in (None, 0.0)}
+        needed |= {name for name, value in scene.system.options.items() if value is not None}
+        needed -= {"units"}  # which each variable has
+        assert {*needed, "transient", "record"} <= known, path.name
+        assert "b_star" in known or {"b_right", "b_left"} <= known, path.name
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_a_name_means_the_same_in_all_models(name):
+    for key, row in MODELS[name].flat(MOST_MASSES).items():
+        assert (row.symbol, row.label) == (OF_A_SYSTEM[key].symbol, OF_A_SYSTEM[key].label), key

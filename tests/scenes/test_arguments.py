@@ -8,10 +8,11 @@ import math
 import numpy as np
 import pytest
 import xarray as xr
+from support.oscillators import PAPER
 
 import vibro_sweep as vs
 
-SYSTEM = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=6.6)
+SYSTEM = PAPER.replace(b=6.6)
 REST = (0.0, 0.0, 0.0, 0.0)
 
 

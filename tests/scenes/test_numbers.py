@@ -4,16 +4,13 @@ import h5py
 import numpy as np
 import pytest
 import xarray
-from support import ROOT, sample, slow_cases
+from support import sample, slow_cases
+from support.oscillators import PAPER_NUMBERS
 from support.scene_texts import parsed
 
 import vibro_sweep as vs
-from vibro_sweep import plotting
-from vibro_sweep.driver import blocks
-from vibro_sweep.model.parameters import NAMES
-from vibro_sweep.scene import resolved_numbers
 
-PAPER = "mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 6.6"
+PAPER = f"{PAPER_NUMBERS}, b: 6.6"
 ORBIT = "orbit: {transient: 3, record: 4}\nobserve: [impacts]"
 SWEEPS = {
     "one orbit": "",
@@ -40,13 +37,13 @@ def run(folder, text, system=PAPER, orbit=ORBIT):
 def test_every_number_of_every_point_is_in_the_file(tmp_path, kind, tau):
     """As an attribute or a coordinate, what the block of the point was computed with; b* is that of `vs.grazing`."""
     scene, path = run(tmp_path, SWEEPS[kind], f"{PAPER}, tau: {tau}" if kind != "tau" else PAPER)
-    used = next(blocks.blocks(scene, 100)).parameters
+    used = {name: values for name, values in scene.parameters().items() if not name.startswith("start_")}
     with vs.open(path) as data, xarray.open_dataset(path, engine="h5netcdf") as plain:
         assert set(plain.coords) == set(data.coords)
         lead = [name for name in data.status.dims if name != "start"]
         stars = np.empty(scene.sweep_shape)
         for place in np.ndindex(stars.shape):
-            system = scene.system.replace(**{name: float(used[name][place]) for name in NAMES if name != "tau"})
+            system = scene.system.replace(**{name: float(used[name][place]) for name in used if name != "tau"})
             stars[place] = vs.grazing(system).b
         follow = {"offset", "R_left", "mu_c"}  # that are not given are not told
         assert not follow & {*data.attrs, *data.coords}
@@ -108,7 +105,7 @@ ODD = PAPER.replace("10,", "010,", 1)
 def test_impacts_are_drawn_by_the_record_of_the_run(tmp_path, record, count):
     orbit = f"orbit: {{transient: 100, record: {record}}}\nobserve: [impacts]"
     _, path = run(tmp_path, SWEEPS["b"], ODD, orbit)
-    ax = plotting.figure(path, "impacts").axes[0]
+    ax = vs.plot(path, kind="impacts").axes[0]
     with h5py.File(path) as file:
         assert file.attrs["record"] == count and file.attrs["mu_m"] == 10
         right = {line.get_label(): line.get_ydata() for line in ax.lines}["right"]
@@ -121,21 +118,4 @@ def test_a_text_of_the_scene_that_says_something_else_is_not_asked(tmp_path):
     _, path = run(tmp_path, SWEEPS["b"])
     with h5py.File(path, "r+") as file:
         file.attrs["scene"] = "system: {mu_m: 3"
-    assert r"\mu_m = 10" in plotting.figure(path).get_suptitle()
-
-
-def test_every_example_has_its_numbers():
-    """What a file would say of each scene that comes with the package."""
-    found = (ROOT / "configs").rglob("*.yaml")
-    scenes = sorted(path for path in found if path.parent.name != "branches")
-    assert len(scenes) > 10
-    for path in scenes:
-        scene = vs.load_scene(path)
-        found = (resolved_numbers.attributes, resolved_numbers.dimensions, resolved_numbers.matrices)
-        known = {name for numbers in found for name in numbers(scene)} | {*scene.sweep}
-        told = {name for name, value in scene.system.numbers.items() if value not in (None, 0.0)}
-        options = {name for name, value in scene.system.options.items() if value is not None} - {
-            "units"
-        }  # variables have them
-        assert {*told, *options, "transient", "record"} <= known, path.name
-        assert "b_star" in known or {"b_right", "b_left"} <= known, path.name
+    assert r"\mu_m = 10" in vs.plot(path).get_suptitle()

@@ -4,7 +4,7 @@ import subprocess
 import sys
 
 import pytest
-from support.cli import contents
+from support.contents import bytes_in
 from support.programs import ended
 
 SCHEDULER = ["run", "good.yaml", "--scheduler", "tcp://host:8786"]
@@ -23,17 +23,17 @@ def test_a_folder_that_is_read_only(scene_folder, monkeypatch):
         raise PermissionError(13, "Permission denied")
 
     monkeypatch.setattr("tempfile.TemporaryFile", refuse)
-    before = contents(scene_folder)
+    before = bytes_in(scene_folder)
     status, out, err = ended("run", "good.yaml")
-    assert (status, out) == (2, "") and contents(scene_folder) == before
+    assert (status, out) == (2, "") and bytes_in(scene_folder) == before
     assert err == "vibro-sweep: error: --output good.h5: cannot write into .: Permission denied\n"
 
 
 @pytest.mark.slow
 def test_a_scheduler_without_its_package(scene_folder):
-    before = contents(scene_folder)
+    before = bytes_in(scene_folder)
     command = [sys.executable, "-c", WITHOUT_DISTRIBUTED, *SCHEDULER]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert (done.returncode, done.stdout) == (2, "") and contents(scene_folder) == before
+    assert (done.returncode, done.stdout) == (2, "") and bytes_in(scene_folder) == before
     message = "--scheduler tcp://host:8786 needs the package dask.distributed: pip install distributed"
     assert done.stderr == f"vibro-sweep: error: {message}\n"

@@ -8,20 +8,20 @@ import tempfile
 from collections import Counter
 from pathlib import Path
 
-import h5py
 import jsonschema
 import numpy as np
 
 import vibro_sweep as vs
+from support.contents import assert_same_bits
 from support.fuzz_scenes import broken, scene, to_yaml
 from support.programs import ended
 from support.scene_texts import parsed
-from support.scenes import assert_same_bits, computed
 from support.searching import Report, new_report
-from vibro_sweep.model.status import VALID
-from vibro_sweep.scene.yaml_text import YAMLTextError, read_yaml
+from support.yaml_core import read
+from vibro_sweep.types import Scene
 
 EPS = 2.0**-52
+VALID = (0, 6)  # ok and not_settled
 
 # Reasons that JSON Schema does not say: relations between values, and between keys.
 BEYOND_THE_SCHEMA = re.compile(
@@ -32,6 +32,7 @@ BEYOND_THE_SCHEMA = re.compile(
     "must be given; or k_stop|rigid or compliant|both stops are rigid|the map's section|resolution of double|"
     "is farther than"
 )
+UNREADABLE = re.compile(r"line \d+, column \d+: |unacceptable character |longer than ")
 
 
 def contents(folder: Path) -> dict:
@@ -64,20 +65,23 @@ def validator() -> jsonschema.Draft7Validator:
 
 def agreement(n: int, status: int) -> tuple[str, list[str]]:
     """What became of scene n, and where program and schema are not of one mind although the schema can have one."""
+    problems: tuple[str, ...] = ()
     try:
-        data = read_yaml(broken(n).decode("utf-8-sig"))
-    except (YAMLTextError, UnicodeDecodeError):
+        text = broken(n).decode("utf-8-sig")
+        parsed(text)
+    except UnicodeDecodeError:
         return "refused: no YAML", ["it is accepted"] * (status != 2)
-    problems = [error.message for error in validator().iter_errors(data)]
-    if status == 0:
-        return "accepted", problems
-    if problems:
-        return "refused: form", []
-    try:
-        parsed(broken(n).decode("utf-8-sig"))
     except vs.SceneError as error:
-        return "refused: relations and sizes", [one for one in error.problems if not BEYOND_THE_SCHEMA.search(one)]
-    return "refused: relations and sizes", ["load_scene accepts it"]
+        problems = error.problems
+    if any(map(UNREADABLE.match, problems)):
+        return "refused: no YAML", ["it is accepted"] * (status != 2)
+    beyond = [error.message for error in validator().iter_errors(read(text))]
+    if status == 0:
+        return "accepted", beyond
+    if beyond:
+        return "refused: form", []
+    wrong = [problem for problem in problems if not BEYOND_THE_SCHEMA.search(problem)]
+    return "refused: relations and sizes", wrong if problems else ["load_scene accepts it"]
 
 
 def study_of_runs(n: int) -> Report:
@@ -87,21 +91,22 @@ def study_of_runs(n: int) -> Report:
     except vs.SceneError as error:  # a sweep may lead behind a stop, or into resonance
         assert BEYOND_THE_SCHEMA.search(str(error)), str(error)
         return new_report(refused=1)
-    whole, _ = computed(valid, 10**6, None)
+    with tempfile.TemporaryDirectory() as folder:
+        whole = computed(valid, folder, block=10**6)
+        _hold(valid, whole, n)
+        assert_same_bits(computed(valid, folder, workers=1 + n % 3, block=1 + n % 2), whole)
     well = int(np.count_nonzero(np.isin(whole["status"], VALID)))
-    _hold(valid, whole, n)
-    parts, _ = computed(valid, 1 + n % 3, 1 + n % 11)
-    assert_same_bits(parts, whole)
-    if n % 10 == 0:  # through the file, by several workers
-        with tempfile.TemporaryDirectory() as folder:
-            path = Path(folder) / "out.h5"
-            report = vs.run(valid, path, workers=1 + n // 10 % 3)
-            assert report.points == valid.n_points and report.bad == whole["status"].size - well
-            with h5py.File(path) as file:
-                # attractors are numbered when all points are there
-                kept = {name: values for name, values in whole.items() if name != "attractor_id"}
-                assert_same_bits({name: file[name][()] for name in kept}, kept)
     return new_report(runs=1, orbits=whole["status"].size, well=well)
+
+
+def computed(valid: Scene, folder: str, workers: int = 1, block: int = 1) -> dict[str, np.ndarray]:
+    """The arrays of a scene's file; its report counts what they hold."""
+    path = Path(folder) / "out.h5"
+    report = vs.run(valid, path, workers=workers, block=block, mode="overwrite")
+    with vs.open(path) as data:
+        arrays = {str(name): values.values for name, values in data.data_vars.items()}
+    assert report.points == valid.n_points and report.bad == np.count_nonzero(~np.isin(arrays["status"], VALID))
+    return arrays
 
 
 def study_of_extremes(seed: int) -> Report:
@@ -115,7 +120,8 @@ def study_of_extremes(seed: int) -> Report:
         valid = parsed(to_yaml({"system": numbers, "orbit": orbit, "observe": observe}))
     except vs.SceneError as error:
         return Report(Counter(refused=1), [] if BEYOND_THE_SCHEMA.search(str(error)) else [f"seed {seed}: {error}"])
-    arrays, _ = computed(valid, 1, None)
+    with tempfile.TemporaryDirectory() as folder:
+        arrays = computed(valid, folder)
     status = int(arrays["status"])
     well = not np.isnan(arrays["lyapunov"]).any() and np.isfinite(arrays["x1"]).all()
     bad = status in VALID and not well

@@ -24,3 +24,35 @@ def known_orbits(n, seed):
     error[:, 6] = 1e-3
     average = middle[truth] + error * random.normal(size=(n, 7)).clip(-2, 2)
     return truth, period[truth], average, error
+
+
+def in_order(numbers) -> bool:
+    """Whether 1, 2, ... appear first in this order."""
+    seen = [int(number) for number in dict.fromkeys(np.ravel(numbers).tolist()) if number > 0]
+    return seen == list(range(1, len(seen) + 1))
+
+
+WINDOW = """
+sweep: {b: {start: 6.594, stop: 6.612, num: 37}}
+start: {random: 6, seed: 2}
+orbit: {transient: 6000, record: 400}
+observe: [attractors]"""
+PLANE = """
+sweep: {x1: {start: -6.7, stop: 6.7, num: 9}, v1: {values: [3, 0, -0.3]}}
+start: {x2: 3.2286, v2: 0.2475}
+orbit: {transient: 5000, record: 200}
+observe: [attractors]"""
+AXES = {"x1": "{values: [-6, -3, 0, 3, 6]}", "b": "{values: [6.72, 6.734, 6.74]}"}
+ALONG_B = {  # initial states along a clearance, and clearances along an initial state
+    keys: f"""
+sweep: {{{", ".join(f"{key}: {AXES[key]}" for key in keys)}}}
+start: {{x2: 3.2286, v2: 0.2475}}
+orbit: {{transient: 5000, record: 200}}
+observe: [attractors]"""
+    for keys in (("x1", "b"), ("b", "x1"))
+}
+ROWS = """
+sweep: {R: {values: [0.799, 0.8, 0.801]}, b: {start: 6.598, stop: 6.609, num: 12}}
+start: {random: 6, seed: 1}
+orbit: {transient: 6000, record: 200}
+observe: [attractors]"""

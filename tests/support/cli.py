@@ -2,6 +2,7 @@
 
 import pytest
 
+from support.contents import bytes_in
 from support.programs import main
 
 NUMBERS = dict(mu_m="10", mu_k="5", zeta="0.05", f2="0", omega="0.63", R="0.8", b="6.6")
@@ -21,16 +22,12 @@ def scene_folder(tmp_path, monkeypatch):
     return tmp_path
 
 
-def contents(folder):
-    return {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()}
-
-
 def assert_refused(capsys, folder, arguments, words):
-    before = contents(folder)
+    before = bytes_in(folder)
     assert main(arguments) == 2
     captured = capsys.readouterr()
     for word in words:
         assert word in captured.err
     assert captured.out == ""
     assert captured.err.lower().count("error:") == 1 and "Traceback" not in captured.err
-    assert contents(folder) == before
+    assert bytes_in(folder) == before

@@ -48,3 +48,8 @@ class Cluster:
         for process in self.processes:
             process.kill()
             process.wait()
+
+
+def command_of(scene, output, cluster):
+    """The words that run a scene on a cluster."""
+    return ["run", str(scene), "-o", str(output), "--scheduler", cluster.address, "--quiet"]

@@ -3,13 +3,15 @@
 import pytest
 
 import vibro_sweep as vs
+from support.oscillators import PAPER_NUMBERS
 
-TEXT = """
-system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 6.6}
-sweep: {b: {start: 6.5, stop: 6.9, num: 400}}
-orbit: {transient: 5, record: 60}
+TEXT = f"""
+system: {{{PAPER_NUMBERS}, b: 6.6}}
+sweep: {{b: {{start: 6.5, stop: 6.9, num: 400}}}}
+orbit: {{transient: 5, record: 60}}
 observe: [section, lyapunov, impacts]
 """  # 1 MB
+BLOCK = 40  # points of which a worker computes at once
 
 
 def counted(text):
@@ -30,6 +32,6 @@ def failing_run(scene, path, words, after=3, fault=lambda: None, mode="new"):
             fault()
 
     with pytest.raises(vs.StoreError, match=words) as error:
-        vs.run(scene, path, workers=1, progress=progress, mode=mode)
+        vs.run(scene, path, workers=1, progress=progress, mode=mode, block=BLOCK)
     assert "\n" not in str(error.value)
     return str(error.value), seen

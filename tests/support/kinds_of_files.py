@@ -10,9 +10,10 @@ from typing import NamedTuple
 import pytest
 
 import vibro_sweep as vs
+from support.oscillators import PAPER, PAPER_NUMBERS
 from support.programs import main
 
-SYSTEM = "system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 6}\n"
+SYSTEM = f"system: {{{PAPER_NUMBERS}, b: 6}}\n"
 LINEAR = """
 system: {type: linear, M: [[1, 0], [0, 2]], K: [[3, -1], [-1, 2]], C: [[0.1, 0], [0, 0.1]], contact_normal: [1, 0],
   force: [1, 0], omega: 1.1, R: 0.8, b: 0.5}
@@ -92,7 +93,7 @@ COMPLIANT = {
 }
 RAGGED = ("windows", "branches", "curves")
 PERIODIC = "periodic"  # `PeriodicOrbit.save`
-BOTH_SIDES = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=1)
+BOTH_SIDES = PAPER.replace(b=1)
 
 
 def write_scenes(folder: Path, longer: bool = False) -> None:

@@ -5,6 +5,7 @@ import numpy as np
 import vibro_sweep as vs
 from vibro_sweep.types import Family, Linear
 
+PAPER_NUMBERS = "mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8"  # as scenes write them; b is left out
 PAPER = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=2.0)
 
 

@@ -1,10 +1,12 @@
-"""The program `vibro-sweep` in this process."""
+"""The program `vibro-sweep` in this process, and any program of Python on a terminal."""
 
 import contextlib
 import gc
 import io
 import os
+import pty
 import signal
+import subprocess
 import sys
 from typing import NamedTuple
 from unittest import mock
@@ -46,6 +48,22 @@ def ended(*arguments) -> Ended:
         except SystemExit as end:
             return Ended(end.code or 0, _text(out), _text(err))
     raise AssertionError("the program did not end")
+
+
+def on_a_terminal(*arguments) -> bytes:
+    """What Python with these arguments shows where its errors are a terminal; it ends well."""
+    ours, theirs = pty.openpty()
+    command, shown = [sys.executable, *arguments], b""
+    with subprocess.Popen(
+        command, stdin=theirs, stdout=subprocess.DEVNULL, stderr=theirs, env=os.environ | {"TERM": "xterm"}
+    ) as process:
+        os.close(theirs)
+        with contextlib.suppress(OSError):  # when the other end is closed
+            while read := os.read(ours, 4096):
+                shown += read
+    os.close(ours)
+    assert process.returncode == 0, shown
+    return shown
 
 
 def _stream() -> io.TextIOWrapper:

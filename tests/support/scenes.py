@@ -1,16 +1,14 @@
 """Scenes of every kind, and their numbers as arrays that can be compared bit for bit."""
 
-import h5py
 import numpy as np
 import xarray  # noqa: F401  before a run begins that `done` is to see in the middle: loading it takes a second
 
 import vibro_sweep as vs
+from support.contents import arrays_of, assert_same_bits  # noqa: F401  for faults/test_disk.py
+from support.oscillators import PAPER_NUMBERS
 from support.scene_texts import parsed
-from vibro_sweep.driver import blocks
-from vibro_sweep.driver.compute import CHAIN_ENDS, compute
 
-OSCILLATOR = "mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8"
-PAPER = f"{OSCILLATOR}, b: 6.6"
+PAPER = f"{PAPER_NUMBERS}, b: 6.6"
 ALL = "observe: [section, lyapunov, impacts]"
 
 # every kind of sweep, of start and of observation among them
@@ -97,11 +95,6 @@ def scene_of(text, system=PAPER):
     return parsed(f"system: {{{system}}}\n{text}")
 
 
-def arrays_of(path):
-    with h5py.File(path) as file:
-        return {name: dataset[()] for name, dataset in file.items()}
-
-
 def run(folder, text, system=PAPER, **options):
     """The scene's file, as arrays."""
     path = folder / f"{len(list(folder.iterdir()))}.h5"
@@ -116,31 +109,3 @@ def done(output):
             return np.count_nonzero(data["status"].values != -1)
     except vs.StoreError:  # it is being made
         return 0
-
-
-def assert_same_bits(one, other):
-    assert one.keys() == other.keys()
-    for name in one:
-        if one[name].dtype == object:  # the names of starts
-            assert one[name].tolist() == other[name].tolist()
-        else:
-            assert one[name].shape == other[name].shape and one[name].tobytes() == other[name].tobytes(), name
-
-
-def computed(scene, points, orbits):
-    """The scene's arrays by blocks of so many points and orbits, chains gone on with, put together in its order."""
-    todo, whole = list(blocks.blocks(scene, points, orbits)), {}
-    most = 0
-    while todo:
-        block = todo.pop()
-        box, arrays = compute(block)
-        ends = arrays.pop(CHAIN_ENDS, None)
-        assert (ends is None) == block.last
-        if ends is not None:
-            todo.append(blocks.next_part(scene, block, ends))
-        most = max(most, arrays["status"].size)
-        for name, values in arrays.items():
-            extra = values.shape[arrays["status"].ndim :]
-            target = whole.setdefault(name, np.full(scene.shape + extra, 99, values.dtype))
-            target[box] = values
-    return whole, most

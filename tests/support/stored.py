@@ -3,11 +3,10 @@
 import pytest
 
 import vibro_sweep as vs
+from support.oscillators import PAPER_NUMBERS
 from support.scene_texts import parsed
 
-SYSTEM = (
-    "system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 6.6}\norbit: {transient: 3, record: 4}\n"
-)
+SYSTEM = f"system: {{{PAPER_NUMBERS}, b: 6.6}}\norbit: {{transient: 3, record: 4}}\n"
 SWEEP = "sweep: {b: {values: [6.5, 6.6, 6.7]}}\n"
 PLANE = "sweep: {R: {values: [0.7, 0.8]}, b: {values: [6.5, 6.6, 6.7]}}\n"
 ALL = "observe: [section, lyapunov, impacts]\n"

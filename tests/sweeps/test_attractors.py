@@ -4,14 +4,11 @@ import numpy as np
 import pytest
 from support import sample
 from support.attractors import same_partition
-from support.scenes import OSCILLATOR, run, scene_of
+from support.drawn_starts import drawn_starts
+from support.oscillators import PAPER_NUMBERS
+from support.scenes import run, scene_of
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.attractors import grouping
-from vibro_sweep.driver import blocks
-from vibro_sweep.driver.drawn_starts import starts_of
-from vibro_sweep.scene import scene_of as scene_from
-from vibro_sweep.scene.written import changed
 
 
 def by_hand(system, starts, periods, record=400):
@@ -47,8 +44,7 @@ observe: [attractors, impacts, lyapunov]"""
 def test_each_attractor_of_the_brute_force(coexistence):
     """Section points of `simulate` from the same random starts, compared in pairs."""
     scene, data = coexistence
-    (block,) = blocks.blocks(scene, points_per_block=100)
-    starts = starts_of(block)
+    starts = drawn_starts(scene.system, data["b"], 12, seed=3)
     for i, b in enumerate(data["b"]):
         if b == 6.68:  # chaos: its points never meet
             continue
@@ -77,8 +73,7 @@ def test_mirror_images_are_two(coexistence):
     assert sorted((one[4], one[5])) == [0, 4 / 13] and (one[4], one[5]) == (other[5], other[4])
     assert one[6] == pytest.approx(other[6], rel=1e-6) and not np.allclose(one[:4], other[:4], rtol=0.01)
     system = scene.system.replace(b=6.6)
-    (block,) = blocks.blocks(scene, points_per_block=100)
-    starts = starts_of(block)[0]
+    starts = drawn_starts(scene.system, data["b"][:1], 12, seed=3)[0]
     orbits = [vs.simulate(system, starts[label == number][0], 4013) for number in (1, 2)]
     times = (4000 + np.arange(13)) * system.period
     mirrored = -orbits[0].sample(times - system.period / 2)
@@ -129,12 +124,12 @@ observe: [attractors, section]"""
 
 @pytest.fixture(scope="module")
 def basins(tmp_path_factory):
-    return run(tmp_path_factory.mktemp("basins"), BASINS, f"{OSCILLATOR}, b: 6.734")
+    return run(tmp_path_factory.mktemp("basins"), BASINS, f"{PAPER_NUMBERS}, b: 6.734")
 
 
 def test_basins_against_simulate(basins):
     """Each state of the plane ends where `simulate` from it does."""
-    system = scene_of(BASINS, f"{OSCILLATOR}, b: 6.734").system
+    system = scene_of(BASINS, f"{PAPER_NUMBERS}, b: 6.734").system
     assert basins["start_x1"].shape == (8,) and basins["start_v1"].tolist() == [3, 0, -0.3]
     assert basins["x1"].shape == (8, 3, 200) and basins["attractor"].shape == (8, 3)
     states = [(x1, v1, 3.2286, 0.2475) for x1 in basins["start_x1"] for v1 in basins["start_v1"]]
@@ -142,9 +137,7 @@ def test_basins_against_simulate(basins):
         orbit = vs.simulate(system, states[at], 5200)
         assert np.array_equal(orbit.section[-200:, 0], basins["x1"].reshape(24, 200)[at])
     slow, kept = by_hand(system, states, 5200, record=160)
-    label = grouping.group(
-        basins["period"].ravel(), basins["average"].reshape(-1, 7), basins["average_error"].reshape(-1, 7)
-    )
+    label = basins["attractor_id"].ravel()
     assert len(kept) == label.max() == 3 and same_partition(slow, label)
 
 
@@ -153,18 +146,18 @@ def test_every_swept_state(tmp_path, key):
     """Alone, and with a number of the system."""
     text = f"sweep: {{{key}: {{values: [-0.4, 0.3]}}, R: {{values: [0.7, 0.8]}}}}\norbit: {{transient: 0, record: 3}}"
     rest = ", ".join(f"{name}: {0.1 * n:.1f}" for n, name in enumerate(("x1", "v1", "x2", "v2"), 1) if name != key)
-    data = run(tmp_path, f"start: {{{rest}}}\n{text}", f"{OSCILLATOR}, b: 0.5")
+    data = run(tmp_path, f"start: {{{rest}}}\n{text}", f"{PAPER_NUMBERS}, b: 0.5")
     for i, value in enumerate(data[f"start_{key}"]):
         for j, restitution in enumerate(data["R"]):
             state = dict(x1=0.1, v1=0.2, x2=0.3, v2=0.4) | {key: value}
-            system = scene_of(text, f"{OSCILLATOR}, b: 0.5").system.replace(R=restitution)
+            system = scene_of(text, f"{PAPER_NUMBERS}, b: 0.5").system.replace(R=restitution)
             assert np.array_equal(vs.simulate(system, list(state.values()), 3).section[1:, 2], data["x2"][i, j])
 
 
 def test_too_short_a_transient_is_said(tmp_path):
     """A weakly damped free motion: its exponents say that it settles, and its section points that it has not yet."""
     text = "start: {random: 4}\norbit: {transient: 10, record: 400}\nobserve: [attractors]"
-    system = OSCILLATOR.replace("0.05", "0.005") + ", b: 1.0e+6"
+    system = PAPER_NUMBERS.replace("0.05", "0.005") + ", b: 1.0e+6"
     data = run(tmp_path, text, system)
     assert np.all(data["period"] == 0) and np.all(data["attractor"] == 0) and np.all(data["share"] == 1)
     data = run(tmp_path, text.replace("10,", "2000,"), system)
@@ -179,7 +172,7 @@ def test_an_orbit_that_arrives_within_the_record_has_not_settled(tmp_path):
 start: {random: 32, seed: 1}
 orbit: {transient: 0, record: 40000}
 observe: [attractors, section]"""
-    data = run(tmp_path, text, f"{OSCILLATOR}, b: 6.7524")
+    data = run(tmp_path, text, f"{PAPER_NUMBERS}, b: 6.7524")
     free = np.all(abs(np.diff(data["x1"][:, -3000:], axis=1)) < 1e-6, axis=1)
     arrived = free & (data["period"] == 0)
     assert np.any(arrived) and not np.all(free) and np.all(data["attractor"][arrived] == 0)
@@ -187,39 +180,12 @@ observe: [attractors, section]"""
 
 def test_a_point_that_cannot_be_computed_has_no_attractor(tmp_path):
     text = "sweep: {zeta: {values: [1.0e+6, 0.05]}}\nstart: {random: 3}\norbit: {transient: 100, record: 20}"
-    data = run(tmp_path, f"{text}\nobserve: [attractors]", f"{OSCILLATOR}, b: 6.8")
+    data = run(tmp_path, f"{text}\nobserve: [attractors]", f"{PAPER_NUMBERS}, b: 6.8")
     assert np.all(data["attractor"][0] == -1) and np.isnan(data["share"][0]).all() and np.all(data["attractor"][1] >= 0)
     assert not {"x1", "lyapunov", "impacts_right"} & data.keys()
 
 
 def test_no_stop_no_bound():
     text = "sweep: {x1: {values: [-9, 6.7]}}\norbit: {transient: 1, record: 1}"
-    assert scene_of(text, f"{OSCILLATOR}, b: 6.7, stops: right").shape == (2,)
-    assert scene_of(f"dynamics: map\n{text}".replace("6.7", "7"), f"{OSCILLATOR}, b: 6.7").shape == (2,)
-
-
-@pytest.mark.parametrize("stops", sample(1, ["left", "right", "both"]))
-def test_random_starts_of_any_oscillator_are_between_its_stops(stops):
-    """With one stop, masses that lie around the stops' middle may all have a gap beyond it: it is moved inside."""
-    moved = 0
-    for seed in range(40):
-        rng = np.random.default_rng(seed)
-        n = int(rng.integers(1, 4))
-        numbers = {"M": np.eye(n), "K": 2 * np.eye(n), "C": 0.1 * np.eye(n), "force": np.ones(n)}
-        numbers |= {
-            "contact_normal": rng.normal(size=n),
-            "offset": 10 * rng.normal(),
-            "omega": 0.7,
-            "R": 0.8,
-            "stops": stops,
-        }
-        system = vs.Oscillator.named("linear", b=float(rng.uniform(0.01, 1)), **numbers)
-        given = {"sweep": {"b": [system.b]}, "start": {"random": 3, "seed": 1}, "transient": 0, "record": 1}
-        scene = scene_from(changed({}, {"system": system, **given}), "sweep")
-        (block,) = blocks.blocks(scene, points_per_block=1)
-        states, q = starts_of(block)[0], system.linear
-        gaps = states[:, 0::2] @ q.normal
-        slack = 1e-12 * np.abs(states).max()
-        assert np.all(np.isfinite(states)) and np.all((q.low - slack < gaps) & (gaps < q.high + slack)), seed
-        moved += np.abs(states[:, 0::2] - system.offset).max() > system.b
-    assert moved > 10
+    assert scene_of(text, f"{PAPER_NUMBERS}, b: 6.7, stops: right").shape == (2,)
+    assert scene_of(f"dynamics: map\n{text}".replace("6.7", "7"), f"{PAPER_NUMBERS}, b: 6.7").shape == (2,)

@@ -5,7 +5,6 @@ import pytest
 from support import slow_cases
 
 import vibro_sweep as vs
-from vibro_sweep.plotting.families import describe, kind
 
 BALL = vs.Oscillator.named(
     "ball_in_cavity", mass_ratio=0.05, zeta=0.01, F=0.05, omega=1, tau=0, k_stop=4, c_stop=0.1, b=1
@@ -25,8 +24,28 @@ def test_contacts_count_as_impacts(system, values):
         expected = [sides.count(1) / 100, sides.count(-1) / 100]
         average, period = last.average.values, int(last.period)
         assert average[-3:-1].tolist() == expected and period == 1
-        assert (str(kind(period, average)) == "free") == (sum(expected) == 0)
-        assert ("non-impacting" in describe(period, average)) == (sum(expected) == 0)
+
+
+@pytest.mark.parametrize(
+    "system, values, free, meeting",
+    [
+        (MIXED, (0.2, 0.6, 6.0), "non-impacting", "impact"),
+        *slow_cases((BALL, (0.8, 3.0), "without contact", "contact")),
+    ],
+)
+def test_pictures_say_them(system, values, free, meeting):
+    """Of four starts, which all end on one attractor of period 1."""
+    seen = set()
+    for b in values:
+        states = {"x1": [-0.1, 0.1], "v1": [0, 0.05]}
+        data = vs.sweep(system.replace(b=b), states, transient=600, record=100, observe=["section", "attractors"])
+        right, left = data.average.values[0, 0, -3:-1].astype(int).tolist()
+        assert (data.period == 1).all() and (data.average.values[..., -3:-1] == (right, left)).all()
+        words = f"period 1, {right} {meeting} right, {left} left" if right + left else f"{free}, period 1"
+        (text,) = [text.get_text() for legend in vs.plot(data, kind="basins").legends for text in legend.get_texts()]
+        assert text == f"{words} (100 %)"
+        seen.add((right, left))
+    assert (0, 0) in seen and len(seen) > 1
 
 
 @pytest.mark.slow

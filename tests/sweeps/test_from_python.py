@@ -6,19 +6,19 @@ import pickle
 import numpy as np
 import pytest
 from support import ROOT
+from support.oscillators import PAPER, PAPER_NUMBERS
 from support.scene_texts import parsed
 
 import vibro_sweep as vs
 from vibro_sweep.types import Section, Start, Trajectory
 
-SYSTEM = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=6.6)
-NUMBERS = "mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8"
+SYSTEM = PAPER.replace(b=6.6)
 SCENES = sorted(path for path in ROOT.glob("configs/**/*.yaml") if path.parent.name != "branches")
 SHORT = dict(transient=20, record=10)
 
 
 def scene(more, orbit="{transient: 20, record: 10}"):
-    return parsed(f"system: {{{NUMBERS}}}\norbit: {orbit}\n{more}")
+    return parsed(f"system: {{{PAPER_NUMBERS}}}\norbit: {orbit}\n{more}")
 
 
 def assert_same(one, other):
@@ -84,7 +84,7 @@ def test_file_of_a_changed_scene_says_what_was_computed(tmp_path):
 @pytest.mark.parametrize(
     "changes, expected",
     [
-        (dict(system=SYSTEM.replace(R=0.5)), "system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.5"),
+        (dict(system=SYSTEM.replace(R=0.5)), f"system: {{{PAPER_NUMBERS.replace('0.8', '0.5')}"),
         (dict(sweep={"omega": np.array([0.6, 0.7])}), "sweep: {omega: {values: [0.6, 0.7]}}"),
         (dict(sweep={"b": {"start": 5, "stop": 6, "num": 11}}), "sweep: {b: {start: 5, stop: 6, num: 11}}"),
         (dict(sweep=None), "b: 6, tau: grazing"),

@@ -14,7 +14,8 @@ from itertools import islice
 
 import pytest
 from support import sample
-from support.scenes import PAPER, SCENES, arrays_of, assert_same_bits, scene_of
+from support.contents import arrays_of, assert_same_bits
+from support.scenes import PAPER, SCENES, scene_of
 
 import vibro_sweep as vs
 from vibro_sweep.driver import blocks, cost, jobs, memory_needed, pool

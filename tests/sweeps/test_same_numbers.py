@@ -1,4 +1,4 @@
-"""The same numbers, bit for bit, by any workers, blocks and executors, and after an interruption."""
+"""The same numbers, bit for bit, by any way to compute them: workers, blocks, executors, and after an interruption."""
 
 import math
 import multiprocessing
@@ -6,53 +6,143 @@ import signal
 import subprocess
 import sys
 import time
-from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
 
 import numpy as np
 import pytest
 from support import sample, slow_cases
-from support.scene_texts import parsed
-from support.scenes import ALL, EVERY, PAPER, arrays_of, assert_same_bits, done, run, scene_of
+from support.clusters import Cluster
+from support.contents import arrays_of, assert_same_bits
+from support.scenes import ALL, EVERY, PAPER, done, run, scene_of
 
 import vibro_sweep as vs
-from vibro_sweep.driver import blocks, compute
-from vibro_sweep.driver.drawn_starts import starts_of
 
-SMALL = ("random", "attractors")
+SAMPLE = ("random", "follow", "basins", "compliant, attractors", "compliant, follow")
+EXECUTORS = ("threads", "spawned processes", "Dask")
+# (a number of workers or an executor, points of a block; None: as many as take a moment)
+WAYS = [(workers, block) for workers in (1, 2, 3) for block in (1, 4, None)] + [(how, 4) for how in EXECUTORS]
+FAST = [("random", 2, 1), ("follow", 3, 4), ("basins", 2, 4)]
+SLOW = [(name, *way) for name in SAMPLE for way in WAYS if (name, *way) not in FAST]
+SLOW += [(name, 3, block) for name in EVERY if name not in SAMPLE for block in (1, 4)]
 
 
-@pytest.mark.parametrize(
-    "name",
-    [
-        "random",
-        *slow_cases("follow", "attractors", "compliant", "plane", "basins", "compliant, follow", "compliant, force"),
-    ],
-)
-def test_workers_do_not_matter(tmp_path, name):
-    one = run(tmp_path, *EVERY[name], workers=1)
-    assert np.all(one["status"] == 0)
-    for workers in (2, 3):
-        assert_same_bits(run(tmp_path, *EVERY[name], workers=workers), one)
+class Expected:
+    """The arrays of each scene, computed when they are first asked for: by one worker, in blocks of its own choice."""
+
+    def __init__(self, folder):
+        self.folder, self.arrays = folder, {}
+
+    def __call__(self, name: str) -> dict:
+        if name not in self.arrays:
+            self.arrays[name] = run(self.folder, *EVERY[name], workers=1)
+            assert np.all(self.arrays[name]["status"] == 0)
+        return self.arrays[name]
+
+
+@pytest.fixture(scope="module")
+def expected(tmp_path_factory):
+    return Expected(tmp_path_factory.mktemp("expected"))
+
+
+class Executors:
+    """Executors with two workers each, begun when they are first asked for."""
+
+    def __init__(self, folder):
+        self.folder, self.begun, self.cluster = folder, {}, None
+
+    def __call__(self, how: str) -> Executor:
+        if how not in self.begun:
+            self.begun[how] = {
+                "threads": lambda: ThreadPoolExecutor(2),
+                "spawned processes": lambda: ProcessPoolExecutor(2, multiprocessing.get_context("spawn")),
+                "Dask": self.dask,
+            }[how]()
+        return self.begun[how]
+
+    def dask(self) -> Executor:
+        distributed = pytest.importorskip("distributed")
+        self.cluster = Cluster(self.folder)
+        for _ in range(2):
+            self.cluster.worker()
+        self.cluster.wait_for_workers(2)
+        self.client = distributed.Client(self.cluster.address, set_as_default=False)
+        return self.client.get_executor()
+
+    def end(self) -> None:
+        for executor in self.begun.values():
+            executor.shutdown()
+        if self.cluster:
+            self.client.close()
+            self.cluster.end()
+
+
+@pytest.fixture(scope="module")
+def executors(tmp_path_factory):
+    executors = Executors(tmp_path_factory.mktemp("cluster"))
+    yield executors
+    executors.end()
+
+
+class Interruption(Exception):  # noqa: N818
+    pass
+
+
+@pytest.mark.parametrize("name, workers, block", [*FAST, *slow_cases(*SLOW)])
+def test_the_same_bits(tmp_path, expected, executors, name, workers, block):
+    """At once; and interrupted after the first block, and resumed."""
+    how = {"executor": executors(workers)} if workers in EXECUTORS else {"workers": workers}
+    assert_same_bits(run(tmp_path, *EVERY[name], block=block, **how), expected(name))
+
+    steps = []
+
+    def stop(done, total):
+        steps.append(done)
+        if 0 < done < total:
+            raise Interruption
+
+    scene, path = scene_of(*EVERY[name]), tmp_path / "interrupted.h5"
+    try:
+        vs.run(scene, path, block=block, progress=stop, **how)
+    except Interruption:
+        report = vs.run(scene, path, block=block, mode="resume", **how)
+        assert 0 < report.computed < report.points
+    else:
+        assert len(steps) == 2  # there was one block
+    assert_same_bits(arrays_of(path), expected(name))
+
+
+@pytest.mark.parametrize("name", ["random", "follow"])
+def test_a_block_has_so_many_points(tmp_path, name):
+    """Of a `follow` the axis that it follows is never cut, and each direction is a block of its own."""
+    blocks, points = [], math.prod(scene_of(*EVERY[name]).sweep_shape)
+    for size in (1, 1000):
+        steps = []
+        run(tmp_path, *EVERY[name], block=size, progress=lambda done, _, steps=steps: steps.append(done))
+        blocks.append(len(steps) - 1)  # it is called before the first block, too
+    assert blocks == ([2, 2] if name == "follow" else [points, 1])
+
+
+class FreshThreads(Executor):
+    """Each block in a thread of its own, which begins with tables of its own."""
+
+    def submit(self, function, *arguments):
+        with ThreadPoolExecutor(1) as thread:
+            return thread.submit(function, *arguments)
 
 
 @pytest.mark.parametrize("model", ["", "mu_c: 2, "])
-def test_tables_do_not_depend_on_those_in_whose_place_they_come(model):
+def test_tables_do_not_depend_on_those_in_whose_place_they_come(tmp_path, model):
     """What an oscillator shares with the one before it in its lane (cells, phase, all but the stops) stays there."""
     text = f"""
-system: {{mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, {model}R: 0.8, b: 6}}
 sweep:
   tau: {{values: [0.1, 0.2, 0.3]}}
   omega: {{values: [0.2, 0.21, 0.6, 0.61, 0.62, 0.63, 0.64, 0.65, 0.66, 0.67, 0.7, 0.71]}}
 orbit: {{transient: 20, record: 10}}
-observe: [section, lyapunov, impacts]
+{ALL}
 """
-    scene = parsed(text)
-    ((_, together),) = (compute.compute(block) for block in blocks.blocks(scene, points_per_block=100))
-    for block in blocks.blocks(scene, points_per_block=1):
-        with ThreadPoolExecutor(1) as fresh:  # a thread has its own tables
-            box, alone = fresh.submit(compute.compute, block).result()
-        for key, values in alone.items():
-            assert together[key][box].tobytes() == values.tobytes(), (box, key)
+    system = f"{model}{PAPER}".replace("b: 6.6", "b: 6")
+    together = run(tmp_path, text, system, block=100, workers=1)
+    assert_same_bits(run(tmp_path, text, system, block=1, executor=FreshThreads()), together)
 
 
 @pytest.mark.parametrize("name", sample(1, ["random", "compliant"]))
@@ -65,40 +155,10 @@ def test_a_trajectory_leaves_all_else_as_it_is(tmp_path, name):
     assert_same_bits({key: found[key] for key in alone}, alone)
 
 
-@pytest.mark.parametrize("name", [*SMALL, *slow_cases(*[name for name in EVERY if name not in SMALL])])
-def test_block_size_does_not_matter(tmp_path, name):
-    scene, whole = scene_of(*EVERY[name]), run(tmp_path, *EVERY[name])
-    blocks_of = {}
-    for size in (1, 4, 1000):
-        steps = []
-        again = run(tmp_path, *EVERY[name], block=size, progress=lambda done, _, steps=steps: steps.append(done))
-        blocks_of[size] = len(steps) - 1  # it is called before the first block, too
-        assert_same_bits(again, whole)
-    # of a `follow`, the axis that it follows is never cut, and each direction is a block of its own
-    assert (blocks_of[1], blocks_of[1000]) == ((2, 2) if "follow" in name else (math.prod(scene.sweep_shape), 1))
-
-
-@pytest.mark.parametrize("name", slow_cases("random", "compliant, force"))
-def test_executors_do_not_matter(tmp_path, name):
-    own = run(tmp_path, *EVERY[name])
-    with ThreadPoolExecutor(2) as pool:
-        assert_same_bits(run(tmp_path, *EVERY[name], executor=pool), own)
-    with ProcessPoolExecutor(2, mp_context=multiprocessing.get_context("spawn")) as pool:
-        assert_same_bits(run(tmp_path, *EVERY[name], executor=pool), own)
-
-
-def test_random_starts(tmp_path):
-    """They depend on the seed and on the place in the sweep, and are spread over |x_i| < b, |v_i| < omega b."""
+def test_starts_depend_on_the_seed_alone(tmp_path):
     text = "sweep: {b: {values: [1, 2]}}\nstart: {random: 500, seed: SEED}\norbit: {transient: 0, record: 1}"
-    (block,) = blocks.blocks(scene_of(text.replace("SEED", "1")), points_per_block=2)
-    starts = starts_of(block) / np.array([1, 0.63, 1, 0.63])
-    assert starts.shape == (2, 500, 4) and len(np.unique(starts)) == starts.size
-    for b, drawn in zip((1, 2), starts / np.array([[[1]], [[2]]]), strict=True):
-        assert np.all(abs(drawn) < 1), b
-        np.testing.assert_allclose(drawn.mean(axis=0), 0, atol=0.1)
-        np.testing.assert_allclose((drawn**2).mean(axis=0), 1 / 3, atol=0.05)
-    one, same, other = (run(tmp_path, text.replace("SEED", seed))["x1"] for seed in "112")
-    assert np.array_equal(one, same) and not np.any(one == other)
+    same, again, other = (run(tmp_path, text.replace("SEED", seed))["x1"] for seed in "112")
+    assert np.array_equal(same, again) and not np.any(same == other)
 
 
 @pytest.fixture(scope="module")

@@ -3,22 +3,16 @@
 import h5py
 import numpy as np
 import pytest
+from support.contents import arrays_of
+from support.oscillators import PAPER_NUMBERS
 from support.scene_texts import parsed
 
 import vibro_sweep as vs
-from vibro_sweep import plotting
-from vibro_sweep.driver import blocks
-from vibro_sweep.engine import points
-from vibro_sweep.engine.one_system import points_of
-from vibro_sweep.engine.records import new_results
-from vibro_sweep.engine.trajectory import new_trajectories, run_trajectories
-from vibro_sweep.plotting import PlotOptions
 
-PAPER = "mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8"
 STATE = ("x1", "v1", "x2", "v2")
 
 
-def run(folder, text, system=PAPER):
+def run(folder, text, system=PAPER_NUMBERS):
     """The scene, and its file."""
     scene = parsed(f"system: {{{system}}}\n{text}")
     path = folder / "out.h5"
@@ -44,8 +38,7 @@ def simulated(scene, data, i):
 
 def test_impacts_are_those_of_simulate(orbits):
     scene, path = orbits
-    with h5py.File(path) as file:
-        data = {name: dataset[()] for name, dataset in file.items()}
+    data = arrays_of(path)
     counts = []
     for i, b in enumerate(data["b"]):
         orbit = simulated(scene, data, i)
@@ -70,8 +63,7 @@ def test_impacts_are_those_of_simulate(orbits):
 
 def test_section_points_are_exact(orbits):
     scene, path = orbits
-    with h5py.File(path) as file:
-        data = {name: dataset[()] for name, dataset in file.items()}
+    data = arrays_of(path)
     for i in range(4):
         expected = simulated(scene, data, i).section
         stored = np.stack([data[f"trajectory_section_{name}"][i] for name in STATE], axis=-1)
@@ -91,7 +83,7 @@ def test_samples_lie_between_the_stops_without_being_cut_there(orbits):
 def test_an_orbit_of_period_1_shows_one_dot(orbits):
     """Not one for each period, beside each other, as samples that do not meet the sections would."""
     path = orbits[1]
-    (ax,) = plotting.figure(path, "phase-portrait", PlotOptions(at={"b": 3})).axes
+    (ax,) = vs.plot(path, kind="phase-portrait", at={"b": 3}).axes
     dots = [line for line in ax.lines if line.get_label() == r"$t = 0$ mod $T$"]
     (line,) = dots
     assert len(line.get_xdata()) == 5 and np.ptp(line.get_xydata(), axis=0).max() < 1e-9
@@ -105,7 +97,7 @@ def test_an_orbit_of_period_1_shows_one_dot(orbits):
 @pytest.mark.slow
 def test_portraits_reach_the_walls_where_the_orbit_does(orbits):
     """Between samples too, on both sides of each impact, and nowhere else."""
-    fig = plotting.figure(orbits[1], "phase-portrait")
+    fig = vs.plot(orbits[1], kind="phase-portrait")
     with h5py.File(orbits[1]) as file:
         for i in (1, 2, 3):
             ax, count = fig.axes[i], int(file["trajectory_impacts"][i])
@@ -117,20 +109,6 @@ def test_portraits_reach_the_walls_where_the_orbit_does(orbits):
             assert np.all(abs(x[at - 1]) == file["b"][i]) and np.array_equal(x[at - 1], x[at + 1])
 
 
-def test_a_trajectory_that_fails_says_nothing():
-    """Its status says what went wrong; neither zeros nor what came before look like results."""
-    text = f"system: {{{PAPER}, b: 6.6}}\norbit: {{transient: 0, record: 1}}\ntrajectory: {{periods: 2, samples: 5}}"
-    (block,) = blocks.blocks(parsed(text), 1)
-    table = points_of(block.parameters)
-    results, kept = new_results((1, 1)), new_trajectories((1, 1), 5, 2, 5)
-    results["status"], results["end"], results["resting"] = 0, (0.0, np.inf, 0.0, 0.0), 0.0
-    workspace = points.new_workspace(block.plan, int(table["cells"]), 5)
-    run_trajectories(table.reshape(1), results, np.empty((1, 5, 7)), kept, workspace, block.plan)
-    assert results["status"] > 0 and kept.counts == -1
-    for values in kept[:3]:
-        assert np.isnan(values).all()
-
-
 @pytest.mark.parametrize("start", ["{follow: both}", "{random: 3}"])
 def test_every_start_has_its_own(tmp_path, start):
     text = f"""
@@ -139,8 +117,7 @@ start: {start}
 orbit: {{transient: 20, record: 3}}
 trajectory: {{periods: 2, samples: 9}}"""
     scene, path = run(tmp_path, text)
-    with h5py.File(path) as file:
-        data = {name: dataset[()] for name, dataset in file.items()}
+    data = arrays_of(path)
     for i, b in enumerate(data["b"]):
         for n in range(len(data["start"])):
             state = [data[name][i, n, -1] for name in STATE]

@@ -1,9 +1,9 @@
 """The folder of a run that something goes wrong with, its scene, and what the run should give."""
 
 import pytest
+from support.contents import arrays_of
 from support.faults import TEXT
 from support.scene_texts import parsed
-from support.scenes import arrays_of
 
 import vibro_sweep as vs
 
@@ -19,8 +19,7 @@ def folder(path):
 
 
 @pytest.fixture
-def scene(monkeypatch):
-    monkeypatch.setattr("vibro_sweep.driver.memory_needed.BLOCK_BYTES", 100_000)  # some ten blocks
+def scene():
     return parsed(TEXT, "the_scene.yaml")
 
 

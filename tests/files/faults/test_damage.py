@@ -7,40 +7,35 @@ import h5py
 import numpy as np
 import pytest
 from support import slow_cases
-from support.faults import TEXT, counted, failing_run
-from support.files import described
+from support.changes import chunk_of, flip, zeros_to_ones
+from support.contents import arrays_of, assert_same_bits, described
+from support.faults import BLOCK, TEXT, counted, failing_run
+from support.programs import main
 from support.scene_texts import parsed
-from support.scenes import arrays_of, assert_same_bits
 
 import vibro_sweep as vs
-from vibro_sweep.cli import commands as cli
 
 
-def flip(path, name, bit=0, chunk=0):
-    """Turn a bit over in a chunk, behind HDF5's back."""
+def flip_in_chunk(path, name, bit=0, chunk=0):
+    """Turn a bit over in a chunk, behind HDF5's back; the part of the dataset that is lost."""
+    begin, size = chunk_of(path, name, chunk)
     with h5py.File(path) as file:
-        where = file[name].id.get_chunk_info(chunk)
-        place = where.byte_offset + where.size // 2
-        box = tuple(slice(at, at + n) for at, n in zip(where.chunk_offset, file[name].chunks, strict=True))
-    with open(path, "r+b") as file:
-        file.seek(place)
-        byte = file.read(1)[0]
-        file.seek(place)
-        file.write(bytes([byte ^ 1 << bit]))
-    return box
+        place, shape = file[name].id.get_chunk_info(chunk).chunk_offset, file[name].chunks
+    flip(path, begin + size // 2, bit)
+    return tuple(slice(at, at + length) for at, length in zip(place, shape, strict=True))
 
 
 @pytest.mark.parametrize("name", ["x1", *slow_cases("b", "lyapunov", "impacts_right", "status")])
 def test_a_flipped_bit(scene, path, whole, name, capsys):
     vs.run(scene, path)
-    box = flip(path, name)
+    box = flip_in_chunk(path, name)
     with pytest.raises(OSError, match="read data"), h5py.File(path) as file:
         file[name][()]
     with pytest.raises(vs.StoreError, match=rf"damaged: {name} \(1 chunk\); `--resume`"):
         vs.open(path)
     assert f"damaged      {name} (1 chunk)" in described(path)
     if name != "lyapunov":  # which the picture of the section does not need
-        assert cli.main(["plot", str(path)]) == 2
+        assert main(["plot", str(path)]) == 2
         assert f"`{name}` cannot be read, it is damaged" in capsys.readouterr().err
     computed = []
     vs.run(scene, path, mode="resume", progress=lambda done, _: computed.append(done))
@@ -53,16 +48,10 @@ def test_a_flipped_bit(scene, path, whole, name, capsys):
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["status", *slow_cases("impacts_right", "impacts_left", "period")])
 def test_zeros_that_become_ones(scene, path, whole, name):
-    """Two bytes at a time, as a worn-out disk may give them: Fletcher-32 alone does not see it."""
     vs.run(scene, path)
-    with h5py.File(path) as file:
-        where = file[name].id.get_chunk_info(0)
-    content = bytearray(path.read_bytes())
-    chunk = slice(where.byte_offset, where.byte_offset + where.size)
-    found = content.index(bytes(4), chunk.start)
-    assert found < chunk.stop
-    content[found : found + 4] = b"\xff" * 4
-    path.write_bytes(content)
+    before = path.read_bytes()
+    zeros_to_ones(name)(path, np.random.default_rng(1))
+    assert path.read_bytes() != before
     with pytest.raises(vs.StoreError, match=rf"damaged: {name} \(1 chunk\)"):
         vs.open(path)
     vs.run(scene, path, mode="resume")
@@ -72,7 +61,7 @@ def test_zeros_that_become_ones(scene, path, whole, name):
 def test_a_damaged_file_of_other_code_is_left_alone(scene, path, monkeypatch):
     """Its missing points could not be computed as the others were."""
     vs.run(scene, path)
-    flip(path, "x1")
+    flip_in_chunk(path, "x1")
     before = path.read_bytes()
     monkeypatch.setattr("vibro_sweep.driver.code_hash.code_hash", lambda: "0123456789abcdef")
     with pytest.raises(vs.StoreError, match="other code, 0123456789abcdef, another numpy or numba, or a processor"):
@@ -84,7 +73,7 @@ def test_a_damaged_file_of_other_code_is_left_alone(scene, path, monkeypatch):
 def test_several_flipped_bits(scene, path, whole):
     vs.run(scene, path)
     for name, chunk in (("x1", 0), ("x1", 1), ("status", 0), ("b", 0)):
-        flip(path, name, bit=3, chunk=chunk)
+        flip_in_chunk(path, name, bit=3, chunk=chunk)
     assert "damaged      status (1 chunk), b (1 chunk), x1 (2 chunks)" in described(path)
     vs.run(scene, path, mode="resume")
     assert_same_bits(arrays_of(path), whole)
@@ -97,9 +86,8 @@ def test_flipped_bits_are_never_silent(scene, path, whole, count):
     vs.run(scene, path)
     content, rng, refused = path.read_bytes(), np.random.default_rng(6), 0
     for place in rng.integers(0, len(content), count).tolist():
-        changed = bytearray(content)
-        changed[place] ^= 1 << int(rng.integers(0, 8))
-        path.write_bytes(changed)
+        path.write_bytes(content)
+        flip(path, place, int(rng.integers(0, 8)))
         try:
             vs.open(path).close()
         except vs.StoreError:
@@ -117,9 +105,7 @@ def test_one_orbit_is_checked_too(path):
         number = file["min_impact_speed"][()]
     content = path.read_bytes()
     assert content.count(number.tobytes()) == 1
-    changed = bytearray(content)
-    changed[content.index(number.tobytes())] ^= 1
-    path.write_bytes(changed)
+    flip(path, content.index(number.tobytes()), 0)
     for read in (vs.open, described):
         with pytest.raises(vs.StoreError, match="damaged"):
             read(path)
@@ -133,7 +119,7 @@ def test_a_file_cut_off(scene, path, keep, capsys):
         with pytest.raises(vs.StoreError, match="not an HDF5 file, or it is damaged"):
             read(path)
     for command in ("info", "plot"):
-        assert cli.main([command, str(path)]) == 2
+        assert main([command, str(path)]) == 2
         err = capsys.readouterr().err
         assert str(path) in err and "Traceback" not in err
     vs.run(scene, path, mode="overwrite")
@@ -160,17 +146,15 @@ def test_a_part_cut_off_in_mid_run(scene, path, whole, keep):
 def test_a_flipped_bit_in_a_part(scene, path, whole, where):
     """It costs the block that it is in, and is told; the blocks behind it stay."""
     with pytest.raises(ZeroDivisionError):
-        vs.run(scene, path, workers=1, progress=lambda done, _: 1 / (done < 300))
+        vs.run(scene, path, workers=1, block=BLOCK, progress=lambda done, _: 1 / (done < 300))
     part = path.with_name(path.name + ".part")
     before = counted(described(part))[0]
-    content = bytearray(part.read_bytes())
-    content[int(where * len(content))] ^= 4
-    part.write_bytes(content)
+    flip(part, int(where * part.stat().st_size), 2)
     assert "damaged      1 block of the run" in described(part) and 0 < counted(described(part))[0] < before
     with pytest.raises(vs.StoreError, match="is damaged: 1 block of the run"):
         vs.open(part)
     with pytest.raises(ZeroDivisionError):
-        vs.run(scene, path, workers=1, progress=lambda done, _: 1 / (done < before), mode="resume")
+        vs.run(scene, path, workers=1, block=BLOCK, progress=lambda done, _: 1 / (done < before), mode="resume")
     vs.open(part).close()  # what was lost is there again
     vs.run(scene, path, mode="resume")
     assert_same_bits(arrays_of(path), whole)
