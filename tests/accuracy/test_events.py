@@ -36,14 +36,15 @@ def start_of(row, system):
 
 @pytest.mark.parametrize("row", cases.rows("events", 14))
 def test_events(row):
-    """checked: how many of each kind are compared; at_start: what happens there; part: of a number, allowed as well."""
+    """checked: how many of each kind are compared; at_start: what happens there; parts: of a number, allowed too."""
     system = oscillator_of(row["oscillator"])
     most, start_time = row.get("most"), row.get("start_time", 0.0)
     orbit, findings = findings_of(system, start_of(row, system), row["periods"], start_time, most=most)
     assert orbit.status == "ok" and findings.defects == []
     assert {kind: count for kind, count in findings.checked.items() if count} == row["checked"]
     assert max(findings.errors.values()) <= event_check.ALLOWED, findings.errors
-    assert max(findings.parts.values()) <= row.get("part", 1e-12), findings.parts
+    most_parts = row.get("parts", {})
+    assert all(part <= most_parts.get(kind, 1e-12) for (kind, _), part in findings.parts.items()), findings.parts
     if "at_start" in row:
         begins = {"impact": orbit.impacts["t"], "rest": orbit.sticking["t_on"]}
         assert [kind for kind, times in begins.items() if start_time in times] == row["at_start"]
