@@ -17,10 +17,10 @@ from support.searching import Report, Study, new_report
 
 KINDS = {  # its study, in tests/support
     "events": "first_events.study",
-    "events-of-any": "first_impacts.study",
+    "events-of-any": "first_events.study_of_any",
     "events-stiff": "stiff_contacts.study",
-    "events-compliant": "compliant_contacts.study",
-    "events-of-sweeps": "compliant_contacts.study_of_sections",
+    "events-compliant": "first_events.study_of_compliant",
+    "events-of-sweeps": "first_events.study_of_sections",
     "grazes": "near_grazes.study",
     "grazes-compliant": "compliant_grazes.study",
     "exponents": "rounded_orbits.study",

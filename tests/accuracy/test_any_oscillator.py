@@ -1,84 +1,11 @@
-"""Any linear oscillator with one contact, against a reference that works in the coordinates of its masses."""
+"""Exponents of any linear oscillator with one contact, and its units; its first events: test_events.py."""
 
 import numpy as np
 import pytest
-from mpmath import mp, mpf
-from reference.events import simulate
-from reference.machine import machine_of
-from support import slow_cases
-from support.any_oscillators import drawn
-from support.first_impacts import MASSES, study
-from support.searching import searched
+from support.drawn_oscillators import drawn
+from support.first_events import MASSES
 
 import vibro_sweep as vs
-from vibro_sweep.engine.period_map import PeriodMap
-from vibro_sweep.model.parameters import NAMES
-
-# Each number of masses compiles kernels of its own, and so does a constant force.
-SMALL = slow_cases(1, 2, 3)
-
-
-@pytest.mark.parametrize(
-    ("masses", "draws", "least"),
-    slow_cases((2, 1, 1), (1, 6, 5), (2, 9, 5), (3, 15, 5), (5, 8, 2), (8, 7, 1)),
-)
-def test_first_impacts(masses, draws, least):
-    """No further from 30 digits than 10 times what rounding the inputs does."""
-    counted, wrong = searched(study, range(MASSES.index(masses), draws * len(MASSES), len(MASSES)))
-    assert wrong == [] and counted["orbits"] >= least
-
-
-@pytest.mark.parametrize("masses", SMALL)
-def test_sticking_and_release(masses):
-    """Chatter summed up, and rests that the other masses outlast: their times and the states that they lead to."""
-    rests = 0
-    for seed, R in ((3, 0.3), (4, 0.0), (5, 0.4)):
-        system, state = drawn(seed, masses, R=R, R_left=R, b=0.15)
-        orbit = vs.simulate(system, state, 6)
-        exact = simulate(machine_of(system.linear), state, periods=6)
-        assert orbit.status == "ok"
-        long = [rest for rest in exact.rests if rest.t_off - rest.t_on > 1e-6]
-        found = orbit.sticking[orbit.sticking["t_off"] - orbit.sticking["t_on"] > 1e-6]
-        np.testing.assert_allclose(found["t_on"], [float(rest.t_on) for rest in long], rtol=0, atol=1e-9)
-        np.testing.assert_allclose(found["t_off"], [float(rest.t_off) for rest in long], rtol=0, atol=1e-9)
-        assert list(found["side"]) == [rest.side for rest in long]
-        np.testing.assert_allclose(orbit.section, np.array(exact.section, float), rtol=0, atol=1e-9)
-        rests += len(long)
-    assert rests > 5
-
-
-def monodromy(q, state, periods):
-    """The Jacobian of the map over so many periods, by difference quotients in 30 digits."""
-    columns = []
-    with mp.workdps(30):
-        step = mpf(10) ** -14
-        for j in range(len(state)):
-            ends = []
-            for sign in (1, -1):
-                start = [mpf(float(x)) + (sign * step if i == j else 0) for i, x in enumerate(state)]
-                ends.append(simulate(machine_of(q), start, periods=periods).section[periods])
-            columns.append([float((a - b) / (2 * step)) for a, b in zip(*ends, strict=True)])
-    return np.array(columns).T
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("masses", (1, 2, 3))
-def test_growth_of_tangent_vectors(masses):
-    """Over a record of some periods: singular values of its Jacobian, in the metric of the tangent vectors.
-
-    The sum rule alone would not see a wrong term beside the diagonal of the saltation matrix.
-    """
-    for seed in (6, 7):
-        system, state = drawn(seed, masses)
-        periods = 2
-        jacobian = monodromy(system.linear, state, periods)
-        point = vs.simulate(system, state, 0)._engine.point[0]
-        turned = np.kron(point["P"], np.eye(2))
-        frame = point["to_frame"] @ turned
-        lengths = np.abs(np.diag(np.linalg.qr(frame @ jacobian @ np.linalg.inv(frame))[1]))
-        exponents = vs.lyapunov(system, state, transient=0, record=periods)
-        assert abs(exponents.residual) < 1e-12
-        np.testing.assert_allclose(exponents, np.sort(np.log(lengths) / (periods * system.period))[::-1], atol=1e-9)
 
 
 @pytest.mark.slow
@@ -161,37 +88,6 @@ def test_masses_that_the_contact_does_not_see(R, K1, K2, C2):
     assert len(orbit.impacts) > 10
     exact = np.sort([*other, -C2 / 2, -C2 / 2, -0.03, -0.03])[::-1]
     np.testing.assert_allclose(found, exact, rtol=0, atol=1e-6)
-
-
-@pytest.mark.parametrize(
-    "changes",
-    [
-        dict(offset=0.3, R_left=0.6),
-        dict(offset=0.2),
-        *slow_cases(dict(mu_c=2.0, offset=-0.2, R_left=0.7), dict(mu_c=9.0)),
-    ],
-)
-def test_derivatives_of_the_period_map(changes):
-    """By the state and by every parameter, against difference quotients; unequal stops, damping not proportional."""
-    numbers = dict(mu_m=10.0, mu_k=5.0, zeta=0.05, f2=0.25, omega=0.63, R=0.8, b=2.0, tau=0.4) | changes
-    state = np.array([0.1, 0.9, 0.3, -0.1])
-
-    def end(state, **more):
-        return PeriodMap(vs.System(**numbers | more))([state], 2).states[0]
-
-    found = PeriodMap(vs.System(**numbers))([state], 2, jacobian=True, parameters=True)
-    assert set(found.impacts[0]["side"]) == {-1, 1}
-    h, size = 1e-6, np.abs(found.jacobian[0]).max()
-    for j, unit in enumerate(np.eye(4)):
-        quotient = (end(state + h * unit) - end(state - h * unit)) / (2 * h)
-        np.testing.assert_allclose(found.jacobian[0][:, j], quotient, atol=1e-7 * size)
-    for j, name in enumerate(NAMES):
-        step = h * numbers[name]
-        quotient = (end(state, **{name: numbers[name] + step}) - end(state, **{name: numbers[name] - step})) / (
-            2 * step
-        )
-        bound = 1e-6 * max(np.abs(found.parameters[0][:, j]).max(), 1)
-        np.testing.assert_allclose(found.parameters[0][:, j], quotient, atol=bound, err_msg=name)
 
 
 @pytest.mark.parametrize("stops", ["both", "right"])

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from support.any_oscillators import one_mass
+from support.drawn_oscillators import one_mass
 
 import vibro_sweep as vs
 

@@ -80,36 +80,9 @@ def test_flight_over_a_period(case):
     assert error < max(10 * condition, 1e-15)
 
 
-def compare_impacts(system, state, count, digits=30, tolerance=1e-10):
-    """The first impacts against the slow simulator; times relative to the period, speeds to the largest of them."""
-    exact = naive.simulate(system.parameters(), state, periods=5, impacts=count, digits=digits)
-    assert exact.impacts
-    periods = int(exact.impacts[-1].t / system.period) + 1
-    orbit = vs.simulate(system, state, periods=periods)
-    assert orbit.status == "ok"
-    hits = orbit.impacts[: len(exact.impacts)]
-    assert hits["side"].tolist() == [p.side for p in exact.impacts]
-    assert np.abs(hits["t"] - [float(p.t) for p in exact.impacts]).max() < tolerance * system.period
-    speeds = np.array([float(p.v1) for p in exact.impacts])
-    assert np.abs(hits["v1"] - speeds).max() < tolerance * np.abs(speeds).max()
-    return orbit
-
-
-@pytest.mark.parametrize("b", [1e-9, 1e-6, 1e-3, 1e3, 1e6, 1e9])
-def test_clearances(b):
-    """From the size of the rounding of x2 to where the force plays no part."""
-    system = vs.System(**PAPER, R=0.8, b=b, tau=0.0)
-    compare_impacts(system, (0.5 * b, max(b, 1.0), -0.2 * b, 0.1 * b), count=12)
-
-
-@pytest.mark.parametrize("R", [0.0, 1e-6, 1 - 1e-9, 1.0])
-def test_restitution(R):
-    compare_impacts(vs.System(**PAPER, R=R, b=3.0), (1.0, 0.5, -0.5, 0.2), count=12)
-
-
 def test_thousands_of_impacts_in_a_period():
     system = vs.System(**PAPER, R=1.0, b=1e-3, tau=0.0)
-    orbit = compare_impacts(system, (0.0, 1.0, 0.0, 0.0), count=60)
+    orbit = vs.simulate(system, (0.0, 1.0, 0.0, 0.0), 1)
     assert orbit.status == "ok"
     assert len(orbit.impacts) > 3000
     # nothing is passed through: nearly always stop to stop, and M1 is back on the stop where it is hit twice

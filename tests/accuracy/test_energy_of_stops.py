@@ -8,7 +8,6 @@ from reference.machine import machine_of
 from support import slow_cases
 
 import vibro_sweep as vs
-from vibro_sweep.model.state import state
 
 ONE = dict(k=1, zeta=0.01, F=0.5, omega=0.8, b=1, tau=0.3)
 PAPER = dict(mu_m=10, mu_k=5, zeta=0.05, f2=0.2, omega=0.63, b=3, tau=0.4)
@@ -83,7 +82,7 @@ def test_balance_of_energy(masses, law):
     before, after = (energy_of(q, orbit.section[n]) for n in (transient, transient + PERIODS))
     taken = float(data.impact_power[0]) * PERIODS * T
     assert given == pytest.approx(damped + taken + after - before, abs=1e-10)
-    for name, values in zip(state(masses), states.T, strict=True):
+    for name, values in zip(("x1", "v1", "x2", "v2", "x3", "v3")[: 2 * masses], states.T, strict=True):
         assert float(data[f"rms_{name}"][0]) == pytest.approx(np.sqrt(weights @ values**2 / (end - begin)), rel=1e-11)
         most = np.abs(values).max()
         assert most * (1 - 1e-8) <= float(data[f"peak_{name}"][0]) <= most * 1.005

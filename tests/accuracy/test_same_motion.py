@@ -4,11 +4,11 @@ import math
 
 import numpy as np
 import pytest
+from reference import naive
 from support import slow_cases
-from support.any_oscillators import drawn, one_mass
+from support.drawn_oscillators import drawn, one_mass
 
 import vibro_sweep as vs
-from vibro_sweep.engine.one_system import Engine
 
 SMALL = [2, *slow_cases(1, 3)]
 
@@ -107,14 +107,37 @@ def test_a_free_mode_of_the_paper():
 def test_eight_orbits_are_as_one_alone(masses):
     """Bit for bit, whatever the others do; chatter and rests among them."""
     system, state = drawn(2, masses, R=0.5, b=0.4)
-    engine = Engine(system)
-    states = engine.to_contact(state + 0.05 * np.random.default_rng(1).normal(size=(8, 2 * masses)))
-    states = states[(states[:, 0] > engine.stops.left) & (states[:, 0] < engine.stops.right)]
-    together, records = engine.carry_eight(states, 0, 20)
-    ends, logged = together["X"].copy(), together["impacts_logged"].copy()
-    rows = [records.impacts[i, :count].copy() for i, count in enumerate(logged)]
-    assert len(states) > 4 and logged.sum() > 100
-    for i, start in enumerate(states):
-        alone, record = engine.carry_eight(start[None], 0, 20)
-        assert np.array_equal(alone["X"][0], ends[i])
-        assert np.array_equal(record.impacts[0, : logged[i]], rows[i])
+    names = [f"{letter}{mass}" for mass in range(1, masses + 1) for letter in "xv"]
+    tones = system.omega * np.linspace(0.8, 1.2, 8)
+    how = dict(start=dict(zip(names, state, strict=True)), transient=0, record=20, observe=["section", "impacts"])
+    together, impacts = vs.sweep(system, {"omega": tones}, **how), 0
+    for i, omega in enumerate(tones):
+        alone = vs.sweep(system, {"omega": [omega]}, **how)
+        for name in alone.data_vars:
+            assert alone[name].values[0].tobytes() == together[name].values[i].tobytes(), name
+        impacts += len(vs.simulate(system.replace(omega=omega), state, 20).impacts)
+    assert impacts > 100
+
+
+@pytest.mark.slow
+def test_the_paper_by_its_matrices():
+    """As the test by modes has it, with the bounds of the energies."""
+    paper = vs.System(mu_m=1e-4, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=1.0, tau=0.3)
+    q = paper.linear
+    same = vs.Oscillator(
+        q.M, q.K, q.C, contact_normal=q.normal, force=q.sine, force_cos=q.cosine, omega=0.63, R=0.8, b=1.0, tau=0.3
+    )
+    one, other = (vs.simulate(system, np.zeros(4), 10).impacts for system in (paper, same))
+    assert len(one) == len(other) > 10
+    np.testing.assert_allclose(other["t"], one["t"], rtol=0, atol=1e-11)
+
+
+def test_a_transient_that_ends_above_grazing_ends_on_the_steady_motion():
+    """All ways of asking for the same orbit: a long transient is jumped over, a record is not."""
+    system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=6.8)
+    x = [complex(a) * np.exp(1j * system.phase) for a in naive.response(system.parameters() | {"tau": 0.0})]
+    steady = [part for a in x for part in (a.imag, (1j * system.omega * a).imag)]
+    found = vs.sweep(system, {"b": [6.8, 7.5]}, observe=("section", "impacts"), transient=3000, record=10)
+    for name, value in zip(("x1", "v1", "x2", "v2"), steady, strict=True):
+        np.testing.assert_allclose(found[name].values, value, rtol=1e-12, atol=1e-12)
+    assert not found.impacts_right.values.any() and not found.impacts_left.values.any()

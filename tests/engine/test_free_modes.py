@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from support import slow_cases
-from support.any_oscillators import frame_of_one
+from support.frames import frame_of_one
 
 import vibro_sweep as vs
 from vibro_sweep.engine.period_map import PeriodMap

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from support import slow_cases
-from support.any_oscillators import positive
+from support.drawn_oscillators import positive
 
 import vibro_sweep as vs
 from vibro_sweep.analysis.single.tables import table_of

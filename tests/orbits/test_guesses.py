@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from support import slow_cases
-from support.any_oscillators import drawn
+from support.drawn_oscillators import drawn
 from support.oscillators import PAPER
 
 import vibro_sweep as vs

@@ -1,12 +1,12 @@
 """Curves of sticking onsets: 30 digits (tests/reference/chatter.py), simulation, closed relations."""
 
 import math
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from mpmath import mp
 from reference.chatter import Chatter
+from reference.machine import machine_of
 from support.oscillators import PAPER
 
 import vibro_sweep as vs
@@ -50,10 +50,13 @@ def numbers_at(special):
 def error_at(special) -> float:
     """Of b, against 34 digits, in parts of the free motion's amplitude: what rounding of the gap is a part of."""
     s, q, state, end = numbers_at(special)
-    oscillator = SimpleNamespace(linear=q, omega=q.omega, b=q.high, offset=0.0, R=q.R_high, R_left=None)
+
+    def machine_at(b):
+        return machine_of(q._replace(high=b, low=-b))
+
     with mp.workdps(34):
-        chatter = Chatter(oscillator, s.sigma, s.half_periods, s.sides[1:])
-        exact = chatter.where_sticking(state, end, s.times[1:], "b", q.high)
+        chatter = Chatter(machine_at, s.sigma, s.half_periods, s.sides[1:])
+        exact = chatter.where_sticking(state, end, s.times[1:], q.high)
     return abs(float(exact) - q.high) / max(q.high, abs(steady_gap(q).swing))
 
 

@@ -11,47 +11,42 @@ from mpmath import exp, findroot, log, mp, mpf, pi, zeros
 
 from reference.flow import matrix_of
 from reference.gmp import context, dot, from_gmp, to_gmp
-from reference.machine import machine_of
 
 NEAREST = mpf(10) ** -9  # s of the last impact: the parameter's error is its square
 EXTRA = 80  # bits: the gap moves by s^3 only
 
 
 class Chatter:
-    """An `Oscillator` (tau a number) whose motion is repeated after half periods, mirrored if sigma is -1.
+    """A machine whose motion is repeated after half periods, mirrored if sigma is -1.
 
+    machine_at: the machine, of one harmonic and one contact, at a value of the parameter.
     sides: of the impacts written out, in order, the last ones of the chatter; unknowns: state (x, x') at T, T, log s.
     """
 
-    def __init__(self, oscillator, sigma: int, half_periods: int, sides):
-        self.q, self.sigma, self.half_periods, self.sides = oscillator.linear, sigma, half_periods, tuple(sides)
-        self.machine, self.N = machine_of(self.q)._replace(contacts=()), len(self.q.normal)
-        self.numbers = {name: mpf(getattr(oscillator, name)) for name in ("omega", "b", "offset", "R")}
-        self.follows = oscillator.R_left is None
-        self.numbers["R_left"] = self.numbers["R"] if self.follows else mpf(oscillator.R_left)
-        self.normal = [mpf(a) for a in self.q.normal.tolist()]
+    def __init__(self, machine_at, sigma: int, half_periods: int, sides):
+        self.machine_at, self.sigma, self.half_periods, self.sides = machine_at, sigma, half_periods, tuple(sides)
 
-    def system(self, name, value):
-        """A of z' = A z for z = (x, x', sin, cos, 1), and the numbers, with one of them replaced."""
-        n = self.numbers | {name: value}
-        if self.follows:
-            n["R_left"] = n["R"]
-        size = 2 * self.N + 3
+    def system(self, value):
+        """A of z' = A z for z = (x, x', sin, cos, 1), and the numbers beside it, at a value of the parameter."""
+        machine = self.machine_at(value)
+        (contact,) = machine.contacts
+        self.N, size = machine.masses, 2 * machine.masses + 3
         order = [*range(0, 2 * self.N, 2), *range(1, 2 * self.N, 2), *range(2 * self.N, size)]
-        A = matrix_of(self.machine._replace(omega=n["omega"]))
-        push = mp.inverse(mp.matrix(self.q.M.tolist())) * mp.matrix(self.normal)
-        n["push"] = [value / mp.fdot(self.normal, push) for value in push]
+        A = matrix_of(machine._replace(contacts=()))
+        self.normal = [mpf(a) for a in contact.normal]
+        push = mp.inverse(mp.matrix(machine.M)) * mp.matrix(self.normal)
+        n = {"omega": mpf(machine.omega), "tau": mpf(machine.tau)}
+        n["push"] = [each / mp.fdot(self.normal, push) for each in push]
+        n["stops"] = {stop.side: mpf(stop.place) for stop in contact.stops}
+        n["R"] = {stop.side: mpf(stop.R) for stop in contact.stops}
         return mp.matrix([[A[i, j] for j in order] for i in order]), n
-
-    def stop(self, n, side):
-        return n["offset"] + side * n["b"]
 
     def speed(self, z):
         return self.gap(z[self.N :])
 
     def taylor(self, A, n, t, z):
         """Taylor coefficients of the flight through z at t, as long as they count over 3/omega; A, z in gmpy2."""
-        phase = n["omega"] * from_gmp(t) + mpf(self.q.tau)
+        phase = n["omega"] * from_gmp(t) + n["tau"]
         term = [*z, to_gmp(mp.sin(phase)), to_gmp(mp.cos(phase)), gmpy2.mpfr(1)]
         result, reach = [term], to_gmp(3 / n["omega"])
         least, power = gmpy2.mpfr(10) ** (-mp.dps - 25), gmpy2.mpfr(1)
@@ -69,13 +64,13 @@ class Chatter:
         return total
 
     def gap(self, z):
-        return sum(a * x for a, x in zip(map(float, self.q.normal), z[: self.N], strict=True))
+        return sum(a * x for a, x in zip(map(float, self.normal), z[: self.N], strict=True))
 
     def back(self, A, n, t, z, side, aim):
         """(time, state after) of the impact on `side` before the flight that ends in z at t; aim: its time, roughly."""
         series = self.taylor(A, n, t, z)
         gaps = [self.gap(term) for term in series]
-        gaps[0] -= to_gmp(self.stop(n, side))
+        gaps[0] -= to_gmp(n["stops"][side])
         u = aim - t
         for _ in range(60):
             value = slope = gmpy2.mpfr(0)
@@ -89,18 +84,18 @@ class Chatter:
 
     def before(self, n, z, side):
         """The state before an impact, from that after it."""
-        R = to_gmp(n["R" if side > 0 else "R_left"])
+        R = to_gmp(n["R"][side])
         jump = (1 + R) * -self.speed(z) / R
         return [*z[: self.N], *(v + jump * to_gmp(p) for v, p in zip(z[self.N :], n["push"], strict=True))]
 
     def tail(self, A, n, z, T, s, count):
         """(time, state before) of the impact `count` impacts before the one at T - s."""
-        side, R = self.sides[-1], n["R" if self.sides[-1] > 0 else "R_left"]
+        side, R = self.sides[-1], n["R"][self.sides[-1]]
         series, f = self.taylor(A, n, T, z), to_gmp(part_lost(R))
         # the impact at T - s: all but the gap and its velocity are as on the motion through T
         state = self.at(series, -s)
         jerk = 6 * self.gap(series[3])
-        aims = to_gmp(self.stop(n, side)) - self.gap(state), jerk * s**2 * f * (3 - f) / 6 - self.speed(state)
+        aims = to_gmp(n["stops"][side]) - self.gap(state), jerk * s**2 * f * (3 - f) / 6 - self.speed(state)
         for i, p in enumerate(map(to_gmp, n["push"])):
             state[i] += aims[0] * p
             state[self.N + i] += aims[1] * p
@@ -123,12 +118,12 @@ class Chatter:
             period = to_gmp(pi / n["omega"] * self.half_periods)
             state = self.at(self.taylor(A, n, t, state), end - period - t)
             second = self.taylor(A, n, T, z)[2]
-            rows = [self.gap(z) - to_gmp(self.stop(n, self.sides[-1])), self.speed(z), 2 * self.gap(second)]
+            rows = [self.gap(z) - to_gmp(n["stops"][self.sides[-1]]), self.speed(z), 2 * self.gap(second)]
             return [from_gmp(v) for v in rows + [a - self.sigma * b for a, b in zip(state, ended, strict=True)]]
 
     def first_s(self, A, n, z, T, last):
         """(count, log s) with which the last impact written out is at the time `last`."""
-        shrunk = log(1 - part_lost(n["R" if self.sides[-1] > 0 else "R_left"]))
+        shrunk = log(1 - part_lost(n["R"][self.sides[-1]]))
         count = int(log(NEAREST / (T - last)) / shrunk)
         s = log(T - last) + count * shrunk
         for _ in range(4):
@@ -148,22 +143,22 @@ class Chatter:
                 later = -self.gap(series[2]) / self.gap(series[3]) / 3
                 z = [from_gmp(value) for value in self.at(series, later)]
                 T += from_gmp(later)
-            gap, speed = (mp.fdot(map(mpf, map(float, self.q.normal)), half) for half in (z[: self.N], z[self.N :]))
+            gap, speed = (mp.fdot(self.normal, half) for half in (z[: self.N], z[self.N :]))
             for i, p in enumerate(n["push"]):
-                z[i] += (self.stop(n, side) - gap) * p
+                z[i] += (n["stops"][side] - gap) * p
                 z[self.N + i] -= speed * p
         return z, T
 
-    def where_sticking(self, state, T, times, name, value):
+    def where_sticking(self, state, T, times, value):
         """The parameter at which the chatter ends so; state (2N,): x, then x', at T; times: before T."""
         z, T, *times = [[mpf(float(v)) for v in state], mpf(float(T)), *(mpf(float(t)) for t in times)]
-        A, n = self.system(name, mpf(value))
+        A, n = self.system(mpf(value))
         z, T = self.ended(A, n, z, T)  # `first_s` takes them as they are
         count, s = self.first_s(A, n, z, T, times[-1])
         x = [*z, T, s, mpf(value)]
 
         def F(x):
-            A, n = self.system(name, x[-1])
+            A, n = self.system(x[-1])
             return mp.matrix(self.residual(A, n, x[:-1], times, count))
 
         h, f, J = mpf(10) ** (-mp.dps // 2), F(x), zeros(len(x))

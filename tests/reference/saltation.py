@@ -30,17 +30,24 @@ def expm(A):
     return result
 
 
-def field(q):
+def field(machine):
     """A (2N + 3, 2N + 3) of z' = A z."""
-    N = len(q.normal)
+    N, (harmonic,) = machine.masses, machine.harmonics
     A = np.zeros((2 * N + 3, 2 * N + 3))
-    inverse = np.linalg.inv(q.M)
+    inverse = np.linalg.inv(machine.M)
     A[:N, N : 2 * N] = np.eye(N)
-    A[N : 2 * N, :N], A[N : 2 * N, N : 2 * N] = -inverse @ q.K, -inverse @ q.C
-    for column, force in enumerate((q.sine, q.cosine, q.constant)):
+    A[N : 2 * N, :N], A[N : 2 * N, N : 2 * N] = -inverse @ machine.K, -inverse @ machine.C
+    for column, force in enumerate((harmonic.sine, harmonic.cosine, machine.constant)):
         A[N : 2 * N, 2 * N + column] = inverse @ force
-    A[2 * N, 2 * N + 1], A[2 * N + 1, 2 * N] = q.omega, -q.omega
+    A[2 * N, 2 * N + 1], A[2 * N + 1, 2 * N] = machine.omega, -machine.omega
     return A
+
+
+def normal_and_push(machine):
+    """n, and the change of the velocities by an impact that changes that of the gap by 1."""
+    normal = np.array(machine.contacts[0].normal)
+    push = np.linalg.solve(machine.M, normal)
+    return normal, push / (normal @ push)
 
 
 class MapOverPeriod(NamedTuple):
@@ -56,22 +63,19 @@ class MapOverPeriod(NamedTuple):
     off: np.ndarray
 
 
-def monodromy(oscillators, sigma, periods, t, sides, v):
+def monodromy(machines, sigma, periods, t, sides, v):
     """`MapOverPeriod` of m orbits with impacts at times t (m, K), on sides (K,), with the gap's speeds v (m, K) before.
 
-    oscillators : m with the fields of the equations above, R_low, R_high; tau a number
+    machines : m of one harmonic and one contact
     periods : (m,) P, after which the motion is sigma times itself
     """
-    N, K, m = len(oscillators[0].normal), len(sides), len(oscillators)
-    A = np.array([field(q) for q in oscillators])
-    along = np.array([q.normal for q in oscillators])
-    push = np.array([np.linalg.solve(q.M, q.normal) for q in oscillators])
-    push /= np.sum(push * along, axis=1)[:, None]
-    one_plus_R = np.array([[1 + (q.R_high if side > 0 else q.R_low) for side in sides] for q in oscillators]).reshape(
-        m, K
-    )
-    stop = np.array([[q.high if side > 0 else q.low for side in sides] for q in oscillators]).reshape(m, K)
-    omega, tau = (np.array([getattr(q, name) for q in oscillators], float) for name in ("omega", "tau"))
+    N, K, m = machines[0].masses, len(sides), len(machines)
+    A = np.array([field(machine) for machine in machines])
+    along, push = np.swapaxes([normal_and_push(machine) for machine in machines], 0, 1)
+    laws = [{stop.side: stop for stop in machine.contacts[0].stops} for machine in machines]
+    one_plus_R = np.array([[1 + law[side].R for side in sides] for law in laws]).reshape(m, K)
+    stop = np.array([[law[side].place for side in sides] for law in laws]).reshape(m, K)
+    omega, tau = (np.array([getattr(machine, name) for machine in machines], float) for name in ("omega", "tau"))
     if K == 0:
         t = np.zeros((m, 1))
     lengths = np.concatenate([np.diff(t, axis=1), (t[:, 0] + periods - t[:, -1])[:, None]], axis=1)

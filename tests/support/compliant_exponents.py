@@ -16,7 +16,6 @@ from reference.machine import machine_of
 
 import vibro_sweep as vs
 from support.searching import Report, new_report, size
-from vibro_sweep.model.state import coordinates
 
 DIGITS = 80  # and two for each of the smallest multiplier
 STEP = -30  # power of ten, and one for each of these
@@ -101,7 +100,7 @@ def compared_at(axis, system, seed=0):
         return Compared(seed, system)
     at = data.isel(b=counted[0])
     system, period = system.replace(b=float(axis[counted[0]])), int(at.period)
-    state = [float(at[one.name][-1]) for one in coordinates(system.masses)]
+    state = [float(at[f"{letter}{mass}"][-1]) for mass in range(1, system.masses + 1) for letter in "xv"]
     small = -float(at.lyapunov.min()) * period * system.period / math.log(10)
     if small > MOST_DIGITS:
         return Compared(seed, system)

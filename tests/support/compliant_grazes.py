@@ -6,8 +6,8 @@ Each is followed alone, with its contacts logged, and again side by side with se
 import numpy as np
 from reference.certified import POSITIVE, REAL, of_masses
 
-from support.any_oscillators import drawn
 from support.decades import DECADES, EPS
+from support.drawn_oscillators import drawn
 from support.near_grazes import CHAIN, flights
 from support.searching import Report, new_report
 from vibro_sweep.engine.compliant.law import LOGGED

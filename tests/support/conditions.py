@@ -1,7 +1,8 @@
 """Special points and changes of stability along a branch, by monodromy matrices that do not come from the engine."""
 
 import numpy as np
-from reference.saltation import expm, field, monodromy
+from reference.machine import machine_of
+from reference.saltation import expm, field, monodromy, normal_and_push
 
 NEAR = 1e-6  # distance of a multiplier from the unit circle within which it counts as on neither side
 MEETS = 1e-6  # distance of a critical multiplier from where it should be
@@ -33,7 +34,7 @@ class Pieces:
             t, v, sides = t[:, :K], v[:, :K], sides[:K]
         self.t, self.v, self.sides, self.periods = t, v, sides, periods
         with np.errstate(all="ignore"):
-            found = monodromy(self.oscillators, self.sigma, periods, t, sides, v)
+            found = monodromy([machine_of(q) for q in self.oscillators], self.sigma, periods, t, sides, v)
         self.off, self.states, matrix = found.off, found.states, found.matrix
         finite = np.all(np.isfinite(matrix), axis=(1, 2))
         self.multipliers = np.full(matrix.shape[:2], np.nan, complex)
@@ -127,7 +128,7 @@ def at_point(orbit):
     period = orbit.period * (np.pi if orbit.symmetric else 2 * np.pi) / q.omega
     t, sides, v = impacts["t"][:K], impacts["side"][:K], impacts["v1"][:K]
     with np.errstate(all="ignore"):
-        found = monodromy([q], sigma, np.array([period]), t[None], sides, v[None])
+        found = monodromy([machine_of(q)], sigma, np.array([period]), t[None], sides, v[None])
     return found, q, t, sides, v, period
 
 
@@ -159,8 +160,7 @@ def flown(found, q, t, sides, v, period, k, lengths):
     """(len(lengths), 2N + 3) states at these times after impact k."""
     N = len(q.normal)
     if len(t):
-        push = np.linalg.solve(q.M, q.normal)
-        push /= push @ q.normal
+        _, push = normal_and_push(machine_of(q))
         one_plus_R = 1 + (q.R_high if sides[k] > 0 else q.R_low)
         x, at = found.states[0, k].copy(), t[k]
         x[N:] -= one_plus_R * v[k] * push
@@ -168,7 +168,7 @@ def flown(found, q, t, sides, v, period, k, lengths):
         x, at = found.states[0, 0], 0.0
     phase = q.omega * at + q.tau
     z = np.concatenate([x, [np.sin(phase), np.cos(phase), 1.0]])
-    return expm(field(q)[None] * np.asarray(lengths)[:, None, None]) @ z
+    return expm(field(machine_of(q))[None] * np.asarray(lengths)[:, None, None]) @ z
 
 
 def _nearest(found, q, t, sides, v, period) -> float:
@@ -198,10 +198,9 @@ def passing(pieces: Pieces) -> list[tuple[str, str]]:
     """Points of a branch at which a flight is beyond a stop."""
     q0, K = pieces.oscillators[0], len(pieces.sides)
     N, m = len(q0.normal), len(pieces.values)
-    along = np.array([q.normal for q in pieces.oscillators])
-    A = np.array([field(q) for q in pieces.oscillators])
-    push = np.array([np.linalg.solve(q.M, q.normal) for q in pieces.oscillators])
-    push /= np.sum(push * along, axis=1)[:, None]
+    machines = [machine_of(q) for q in pieces.oscillators]
+    A = np.array([field(machine) for machine in machines])
+    along, push = np.swapaxes([normal_and_push(machine) for machine in machines], 0, 1)
     omega, tau, low, high = (
         np.array([getattr(q, name) for q in pieces.oscillators], float) for name in ("omega", "tau", "low", "high")
     )

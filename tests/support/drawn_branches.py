@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 import vibro_sweep as vs
-from support.any_oscillators import positive
+from support.drawn_oscillators import positive
 from vibro_sweep.model.linear import amplitudes, family_of, static_state
 from vibro_sweep.types import PeriodicOrbit
 

@@ -1,100 +1,33 @@
-"""Random oscillators of two masses over the whole allowed range: the first events of each orbit against exact flights.
+"""Searches of first events: orbits of random oscillators against the reference, in units of rounding.
 
-Orbit number n is always the same one.
+Of the paper's oscillator over its whole range each event is followed from the one before, so that chaos plays no part;
+orbit number n is always the same one. Those of other oscillators are compared from the start on, until chaos.
 """
 
-import math
+from itertools import pairwise
 
 import numpy as np
 from mpmath import mp, mpf
+from reference import event_check
+from reference.events import simulate as simulated
 from reference.exponentials import TooManySwingsError
 from reference.follow import DIGITS, Follower
+from reference.machine import machine_of
 
 import vibro_sweep as vs
+from support.drawn_oscillators import PAPER_KINDS, drawn, drawn_compliant, drawn_paper, fastest_rate
+from support.event_rows import end_of, errors
 from support.searching import Report, new_report, size
-from vibro_sweep.engine.one_system import Engine
-from vibro_sweep.engine.tables.cells import STIFF_CELLS
-from vibro_sweep.model.grazing import steady_response
 
-SEED = 11
 EVENTS = 30
 SAMPLES = 300
 PERIODS = (1, 8, 64)  # simulated one after the other until there are enough events
 COUNTED = ("checked", "grazes", "unchecked")
 SIZES = (1, 10, 100, 1000)
-CLASSES = ("sticks", "R < 0.1", "stiff", "both stops in a cell")
+CLASSES = ("sticks", "R < 0.1", "stiff", "both stops at once")
 # Error allowed, in units of the effect of rounding (follow.py). Within a cell a stiff flight takes up to 10^4 small
 # steps, each of which is rounded: the largest that was found is 2700.
 LARGEST = 5000
-ROUND = ("narrow", "any", "narrow", "stiff", "narrow", "sticking", "narrow", "little restitution")
-KINDS = (*ROUND, *ROUND, "narrow", "stiff", "any")
-
-
-def draw(n):
-    """Orbit number n -> (numbers of the system, state, start time)."""
-    rng = np.random.default_rng([SEED, n])
-    kind = KINDS[n % len(KINDS)]
-
-    def power(low, high):
-        return 10.0 ** rng.uniform(low, high)
-
-    def one_of(*choices):
-        return choices[rng.integers(len(choices))]
-
-    wide = rng.random() < 0.5
-    mu_m, mu_k = (power(-6, 6), power(-6, 6)) if wide else (power(-1.5, 1.5), power(-1.5, 1.5))
-    zeta = one_of(0.0, power(-6, 1), power(-6, 1), rng.uniform(0, 0.3))
-    squares = vs.System(mu_m=mu_m, mu_k=mu_k, zeta=0, f2=0, omega=1.2345, R=1, b=1, tau=0).modes.omega_squared
-    eta = zeta * squares[1]
-    rate = max(eta + math.sqrt(max(eta**2 - squares[1], 0.0)), math.sqrt(squares[1]))  # the fastest
-    omega = one_of(power(-3, 3), math.sqrt(one_of(*squares)) * power(-1, 1), power(-1, 0.5))
-    R = one_of(0.0, 1.0, rng.uniform(0, 1), rng.uniform(0, 1), rng.uniform(0, 1), power(-20, -1), 1 - power(-12, -1))
-    f2 = one_of(0.0, 1.0, rng.uniform(0, 1))
-    clearance = one_of(power(-6, 0.0), power(-2, 0), rng.uniform(0, 1.1))
-    if kind == "sticking":
-        R, clearance, omega = rng.uniform(0, 0.6), power(-3, -0.2), math.sqrt(squares[0]) * power(-1.5, 0)
-        zeta = one_of(0.0, power(-4, 0))
-    elif kind == "little restitution":
-        R = one_of(0.0, rng.uniform(0, 0.1), rng.uniform(0, 0.1), power(-12, -1), power(-300, -12))
-    elif kind == "stiff":
-        omega = rate * 2 * math.pi / power(3.95, 6.95)
-    elif kind == "narrow":
-        clearance, R = power(-6, -2), one_of(1.0, rng.uniform(0.2, 1), rng.uniform(0.2, 1), R)
-    omega = min(max(omega, 1e-3), 1e3)
-
-    d, e = (x.tolist() for x in steady_response(mu_m, mu_k, zeta, f2, omega))
-    b_star, size = math.hypot(d[0], e[0]), math.hypot(d[1], e[1])
-    stops = one_of("both", "both", "both", "right", "left") if kind != "narrow" else "both"
-    tau = one_of(0.0, rng.uniform(-math.pi, math.pi), rng.uniform(-math.pi, math.pi))
-    start_time = one_of(0.0, 0.0, 0.0, rng.uniform(-1, 3) * 2 * math.pi / omega)
-    place = one_of("anywhere", "anywhere", "origin", "at rest on a stop", "moving on a stop", "graze")
-    if kind == "narrow" and rng.random() < 0.8:
-        place = one_of("anywhere", "moving on a stop")
-    if place == "graze":
-        clearance = 1 + one_of(1, -1, -1) * power(-16, -1)
-    b = clearance * b_star
-    side = {"both": one_of(1.0, -1.0), "right": 1.0, "left": -1.0}[stops]
-    scale = one_of(b, size, b)
-    v1, x2, v2 = rng.normal(size=3) * power(-2, 0.5) * scale * np.array([omega, 1, omega])
-    if kind == "narrow":
-        v1 = one_of(1, -1) * 4 * b * max(4 * omega, rate) * power(0.2, 2)  # across the clearance within a cell
-    state = [rng.uniform(-b, b), v1, x2, v2]
-    if place == "origin":
-        state = [0.0] * 4
-    elif place == "at rest on a stop":
-        state[:2] = side * b, 0.0
-    elif place == "moving on a stop":
-        state[0] = side * b
-    elif place == "graze":
-        start_time = 0.0
-        phase = one_of(side * math.pi / 2, rng.uniform(-math.pi, math.pi))  # pi/2: x1 at its largest
-        tau = phase - math.atan2(e[0], d[0])
-        sin, cos = math.sin(tau), math.cos(tau)
-        state = [d[0] * sin + e[0] * cos, omega * (d[0] * cos - e[0] * sin)]
-        state += [d[1] * sin + e[1] * cos, omega * (d[1] * cos - e[1] * sin)]
-        state[0] = min(max(state[0], -b), b)
-    numbers = dict(mu_m=mu_m, mu_k=mu_k, zeta=zeta, f2=f2, omega=omega, R=R, b=b, tau=tau, stops=stops)
-    return numbers, tuple(map(float, state)), float(start_time)
 
 
 def simulate(system, state, start_time):
@@ -125,15 +58,19 @@ def beyond_a_stop(orbit, follower, until):
 
 def checked(n):
     """Everything about orbit n."""
-    numbers, state, start_time = draw(n)
-    report = {"n": n, "kind": KINDS[n % len(KINDS)]}
+    numbers, state, start_time = drawn_paper(n)
+    report = {"n": n, "kind": PAPER_KINDS[n % len(PAPER_KINDS)]}
     try:
         system = vs.System(**numbers)
-        engine = Engine(system)
-        orbit, events = simulate(system, state, start_time)
+        return report | judged(system, numbers, state, start_time)
     except vs.ParameterError as error:
         return report | {"accepted": False, "why": error.key}
-    report |= {"status": str(orbit.status), "events": events, "accepted": orbit.status == "ok" or events >= EVENTS}
+
+
+def judged(system, numbers, state, start_time):
+    """Everything about the first events of an orbit, each followed from the one before."""
+    orbit, events = simulate(system, state, start_time)
+    report = {"status": str(orbit.status), "events": events, "accepted": orbit.status == "ok" or events >= EVENTS}
     if not report["accepted"]:
         return report | {"why": str(orbit.status)}
     end = None if orbit.status != "ok" else float(orbit.section_times[-1])
@@ -143,14 +80,14 @@ def checked(n):
         for r in orbit.sticking[:EVENTS]
     ]
     times = sorted([hit[0] for hit in impacts] + [t for r in rests for t in r[:2] if t is not None])[:EVENTS]
-    sides = {}
-    for hit in impacts[:EVENTS]:
-        sides.setdefault(math.floor(hit[0] / engine.width), set()).add(hit[1])
+    _, rate = fastest_rate(*(numbers[name] for name in ("mu_m", "mu_k", "zeta")))
+    at_once = 0.25 / max(rate, 4 * system.omega)
+    pairs = pairwise(impacts[:EVENTS])
     report |= {
         "sticks": any(r[0] <= times[-1] for r in rests) if times else bool(rests),
         "R < 0.1": system.R < 0.1,
-        "stiff": engine.cells == STIFF_CELLS,
-        "both stops in a cell": any(len(s) > 1 for s in sides.values()),
+        "stiff": rate * system.period > 8000,
+        "both stops at once": any(a[1] != b[1] and b[0] - a[0] < at_once for a, b in pairs),
     }
     with mp.workdps(DIGITS):
         follower = Follower({**system.parameters(), "stops": system.stops}, mpf(system.period) * mpf(2) ** -53)
@@ -181,4 +118,71 @@ def study(n) -> Report:
         report.counted[size("errors", error, SIZES)] += 1
         if not error <= LARGEST:
             report.wrong.append(f"orbit {n}: error of {name} {error:.3g}")
+    return report
+
+
+MASSES = (1, 2, 3, 5, 8)
+CHAOTIC = 1e-8  # part of a time by which rounding moves it, from which on nothing is compared
+
+
+def study_of_any(seed) -> Report:
+    """The first impacts of an orbit of one number of masses after the other."""
+    masses, number = MASSES[seed % len(MASSES)], 1 + seed // len(MASSES)
+    system, state = drawn(number, masses)
+    orbit = vs.simulate(system, state, 60)
+    if orbit.status != "ok":
+        return Report(new_report(drawn=1).counted, [f"seed {seed}, {masses} masses: {orbit.status}"])
+    return _report(f"seed {seed}, {masses} masses", orbit, state, end_of(orbit, EVENTS), "impact", most=EVENTS)
+
+
+def study_of_compliant(seed, count=20) -> Report:
+    """The first contacts with compliant stops, until a rest, before which chatter has no end."""
+    system, state = drawn_compliant(seed)
+    orbit = vs.simulate(system, state, 20)
+    ended = np.sort(orbit.contacts["t_release"][~np.isnan(orbit.contacts["t_release"])])
+    end = end_of(orbit, count)
+    if len(orbit.sticking):
+        before = [t for t in (*orbit.impacts["t"], *ended) if t < orbit.sticking["t_on"][0]]
+        end = min(end, max(before, default=0.0) * (1 + 1e-8))
+    elif orbit.status != "ok" and len(ended) < count:  # ever shorter contacts, more than are followed
+        end = ended[-1] * (1 + 1e-8) if len(ended) else 0.0
+    where = f"seed {seed}, {system.masses} masses, status {orbit.status}"
+    return _report(where, orbit, state, end, "contact", most=count, steps=20_000)
+
+
+def _report(where, orbit, state, end, kind, **more) -> Report:
+    findings = errors(orbit, state, end, chaos=CHAOTIC, **more)
+    worst, count = max(findings.errors.values(), default=0.0), findings.checked[kind]
+    report = new_report(drawn=1, compared=int(count > 0), **{f"{kind}s": count, "grazes": findings.grazes})
+    if count:
+        report.counted[size("errors", worst)] += 1
+    report.wrong.extend(f"{where}: {defect}" for defect in findings.defects)
+    if not worst <= event_check.ALLOWED:
+        report.wrong.append(f"{where}: {findings.errors}")
+    return report
+
+
+def study_of_sections(seed, periods=6) -> Report:
+    """Section states of a sweep, which computes eight orbits side by side, where rounding leaves some digits."""
+    system, start = drawn_compliant(seed)
+    names = [f"{letter}{mass}" for mass in range(1, system.masses + 1) for letter in "xv"]
+    begin = dict(zip(names, start, strict=True))
+    data = vs.sweep(system, {"omega": [system.omega]}, transient=0, record=periods, start=begin)
+    report = new_report(drawn=1)
+    if data.status.values[0] != 0 or len(vs.simulate(system, start, periods).sticking):
+        return report
+    with mp.workdps(50):
+        rng, machine = np.random.default_rng(1), machine_of(system.linear)
+        moves = [(machine, start), *(event_check.moved(machine, start, rng) for _ in range(event_check.MOVES))]
+        orbits = [simulated(each, list(state), periods + 1e-9).section[1 : periods + 1] for each, state in moves]
+        exact, *others = (np.array(orbit) for orbit in orbits)
+        found = np.stack([data[name].values[0] for name in names], -1)
+        effect = np.max([np.abs(other - exact).max(1) for other in others], 0)
+        error = np.abs(found - exact).max(1)
+        counted = effect < CHAOTIC
+        worst = float((error / (effect + np.spacing(np.abs(found).max(1))))[counted].max(initial=0.0))
+    if counted.any():
+        report.counted.update({"compared": 1, size("errors", worst): 1})
+    if not worst <= event_check.ALLOWED:
+        report.wrong.append(f"seed {seed}: {worst:.3g}")
     return report

@@ -8,8 +8,8 @@ floats.
 import numpy as np
 from reference.certified import POSITIVE, REAL, of_masses
 
-from support.any_oscillators import drawn
 from support.decades import DECADES, EPS
+from support.drawn_oscillators import drawn
 from support.searching import Report, new_report
 from vibro_sweep.engine.one_system import Engine
 from vibro_sweep.engine.simd.lanes import LANES

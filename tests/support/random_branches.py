@@ -10,7 +10,7 @@ from functools import partial
 import numpy as np
 
 import vibro_sweep as vs
-from support.any_oscillators import positive
+from support.drawn_oscillators import positive
 from support.searching import Report, new_report
 from vibro_sweep.model.linear import amplitudes, static_state
 

@@ -6,7 +6,7 @@ from itertools import combinations
 import numpy as np
 
 import vibro_sweep as vs
-from support.any_oscillators import positive
+from support.drawn_oscillators import positive
 from support.random_branches import random_oscillator, random_system, within
 from support.searching import Report, new_report
 

@@ -1,4 +1,4 @@
-"""How exact the impacts of the oscillators of drawn_stiff.py are, and whether they are the right ones.
+"""How exact the impacts of the oscillators of drawn_stiff are, and whether they are the right ones.
 
 The reference works in the coordinates of the masses, in 50 digits: a flight is a sum of exponentials, whose contact
 nearest to the impact that was found is its root. Moved by one rounding in all its numbers, and at each impact anew in
@@ -12,7 +12,7 @@ import numpy as np
 from mpmath import mp, mpf
 
 import vibro_sweep as vs
-from support.drawn_stiff import drawn
+from support.drawn_oscillators import drawn_stiff
 from support.searching import Report, new_report, size
 
 DIGITS = 50
@@ -185,7 +185,7 @@ def study(seed) -> Report:
 
 def compared(seed):
     """What is wrong with the first impacts of oscillator `seed`, in units of what rounding its numbers does."""
-    system, state, report = drawn(seed)
+    system, state, report = drawn_stiff(seed)
     report |= {"seed": seed, "errors": {}}
     try:
         orbit = vs.simulate(system, state, PERIODS)

@@ -4,12 +4,13 @@ Lengths and forces are then multiplied by 2^k, which rounds nothing; but the equ
 a row that is none, so that eliminations may take another order.
 """
 
+from numbers import Real
+
 import numpy as np
 
 import vibro_sweep as vs
 from support.drawn_branches import drawn_orbit, drawn_oscillator
 from support.searching import Report, new_report
-from vibro_sweep.model.arguments import is_number
 
 LENGTHS = ("b", "offset", "F", "constant", "force", "force_cos")
 MODELS = ("one_mass", "ball_in_cavity", "chain", "linear")
@@ -28,7 +29,7 @@ def unit_of(name: str, k: int) -> float:
 
 def scaled(system, k: int):
     """The same oscillator, lengths and forces times 2^k."""
-    numbers = {name: value for name, value in system.numbers.items() if is_number(value)}
+    numbers = {name: value for name, value in system.numbers.items() if isinstance(value, Real)}
     return system.replace(**{name: value * unit_of(name, k) for name, value in numbers.items()})
 
 
@@ -64,7 +65,9 @@ def apart(one, other, k: int, switched: bool, mirrored: bool) -> bool:
         return any(abs(x - y) > 2 * error + close * size for (x, y), size in zip(values, sizes, strict=True))
     numbers = other.system.numbers
     pairs = [
-        (value, numbers[name] / unit_of(name, k)) for name, value in one.system.numbers.items() if is_number(value)
+        (value, numbers[name] / unit_of(name, k))
+        for name, value in one.system.numbers.items()
+        if isinstance(value, Real)
     ]
     speeds = [np.sort(np.abs(orbit.impacts["v1"])) / unit for orbit, unit in ((one, 1.0), (other, 2.0**k))]
     size = speeds[0].max(initial=0.0)

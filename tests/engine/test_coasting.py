@@ -130,13 +130,3 @@ def test_the_state_after_many_periods(periods):
         turns = np.abs(A).max() * system.period * periods  # at least what the fastest mode turns by
         size = (np.abs(state - steady).max() + np.abs(steady).max()) * np.abs(A).max()  # also of speeds
         assert np.abs(engine.orbit["X"][0, :4] - exact).max() < 2.0**-51 * (10 + turns) * size
-
-
-def test_a_transient_that_ends_above_grazing_ends_on_the_steady_motion():
-    """All ways of asking for the same orbit: a long transient is jumped over, a record is not."""
-    system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=6.8)
-    steady = matrices(system)[1]
-    found = vs.sweep(system, {"b": [6.8, 7.5]}, observe=("section", "impacts"), transient=3000, record=10)
-    for name, value in zip(("x1", "v1", "x2", "v2"), steady, strict=True):
-        np.testing.assert_allclose(found[name].values, value, rtol=1e-12, atol=1e-12)
-    assert not found.impacts_right.values.any() and not found.impacts_left.values.any()
