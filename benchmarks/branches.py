@@ -13,7 +13,6 @@ from importlib.util import find_spec
 import numpy as np
 import shared  # noqa: F401
 from scipy.integrate import solve_ivp
-from support.branches import repeated
 from support.oscillators import PAPER
 
 import vibro_sweep as vs
@@ -44,7 +43,7 @@ def least(job, rounds=ROUNDS) -> float:
 def one_sided(count: int) -> Solution:
     """An orbit with `count` impacts."""
     orbit = vs.periodic_orbit(PAPER.replace(b=4.0), itinerary="R")
-    return repeated(orbit, count) if count > 1 else orbit._solution
+    return orbit._solution.whole().repeated(count) if count > 1 else orbit._solution
 
 
 def from_guesses(solution: Solution) -> tuple[float, float]:

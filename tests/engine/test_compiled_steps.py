@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 from scipy.linalg import expm
-from support.branches import repeated
 from support.oscillators import BALL, CAVITY, CHAIN, LONG_CHAIN, ONE_MASS, PAPER
 
 import vibro_sweep as vs
@@ -119,7 +118,7 @@ def test_tests_have_the_signs_of_the_precise_ones(system, itinerary, name, bound
 def test_orbit_written_out_several_times_has_the_same_branch(count):
     short = vs.periodic_orbit(PAPER.replace(b=4.0), itinerary="R")
     _, one = stepper_of(short._solution, "b", (3.5, 4.2))
-    _, many = stepper_of(repeated(short, count), "b", (3.5, 4.2))
+    _, many = stepper_of(short._solution.whole().repeated(count), "b", (3.5, 4.2))
     for stepper in (one, many):
         stepper.run(1)
     for stepper in (one, many):

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from scipy.linalg import eigvals, expm
 from support import slow_cases
-from support.branches import repeated
 from support.oscillators import CAVITY, CHAIN, ONE_MASS, PAPER
 
 import vibro_sweep as vs
@@ -57,7 +56,7 @@ def test_critical_direction_of_a_pitchfork():
 @pytest.mark.parametrize("count", [1, 40])
 @pytest.mark.parametrize("system", [PAPER, *slow_cases(CHAIN.replace(b=0.2))])
 def test_closure_has_the_multipliers(system, count):
-    solution = repeated(vs.periodic_orbit(system, itinerary="LR"), count)
+    solution = vs.periodic_orbit(system, itinerary="LR")._solution.whole().repeated(count)
     linearised, n = Linearised(solution), 2 * len(solution.family.linear.normal)
     one, other = linearised.closure(1), linearised.closure(-1)
     values = eigvals(one + other, other - one)

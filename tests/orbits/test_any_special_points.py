@@ -6,10 +6,9 @@ All points of the first fourteen oscillators in b, omega, R, R_left and offset w
 
 import numpy as np
 import pytest
-from mpmath import mp, mpf
+from mpmath import mp
 from reference.closed_orbit import ClosedOrbit
-from reference.machine import machine_of
-from support.branches import closed_of, exact
+from support.in_digits import closed_of, errors_of, of_orbit
 from support.random_branches import attractors, bounds_of, random_oscillator
 
 import vibro_sweep as vs
@@ -46,9 +45,8 @@ def test_special_points_in_30_digits(seed, name, types):
     special = [s for s in branch.special if s.type != "boundary"]
     assert [s.type for s in special] == types.split()
     for s in special:
-        with mp.workdps(30):
-            difference = float(abs(mpf(s.parameters[name]) - exact(s, name)))
-        assert difference < min(s.error, 1e-13)
+        (off,) = errors_of(s)
+        assert abs(off) < min(s.error, 1e-13)
 
 
 @pytest.mark.parametrize("seed", [11, 0, 1, 2, 4, 6, 10, 13])
@@ -56,8 +54,8 @@ def test_multipliers_in_60_digits(seed):
     """Of the attractor, each to 1e-9 of itself."""
     orbit = attractor(seed)
     with mp.workdps(60):
-        d = closed_of(orbit._solution)
-        closed = ClosedOrbit(machine_of(d.q), *d.of, digits=60)
+        d = closed_of(of_orbit(orbit))
+        closed = ClosedOrbit(d.machine, *d.of, digits=60)
         expected = np.array([complex(mu) for mu in closed.multipliers(*closed.solve(*d.guess))])
     expected = expected[np.lexsort((-expected.imag, -np.abs(expected)))]
     found = orbit.half_multipliers if orbit.symmetric else orbit.multipliers

@@ -30,39 +30,6 @@ def soft_branch():
     return vs.continue_orbit(vs.periodic_orbit(one_stop(), itinerary="R"), "omega", (0.3, 3))
 
 
-LAWS = [
-    {"k_stop": 50, "k_stop_left": 51},
-    {"k_stop": 50, "k_stop_left": 100},
-    {"k_stop": 50, "c_stop": 1, "c_stop_left": 2},
-    {"k_stop": 50, "k_stop_left": 80, "c_stop": 1, "release": "force"},
-]
-
-
-@pytest.mark.parametrize("law", sample(1, LAWS), ids=str)
-def test_two_contacts_that_differ_vanish_together_where_the_free_motion_grazes(law):
-    system = one_mass(**law)
-    b = vs.grazing(system).b
-    free = vs.continue_orbit(vs.periodic_orbit(system.replace(b=1.1 * b), itinerary=""), "b", (0.9 * b, 1.2 * b))
-    (born,) = vs.switch(free.begins)
-    assert sorted(born.itinerary) == ["L", "R"] and born.ok
-    end = vs.continue_orbit(born, "b", (0.9 * b, 1.2 * b)).ends
-    assert end.type == "graze" and end.kind == "persistence"
-    assert end.parameters["b"] == pytest.approx(b, abs=5e-15 * b)
-    assert [again.itinerary for again in vs.switch(end)] == [""]
-
-
-def test_at_the_graze_of_the_free_motion_orbits_that_hit_one_rigid_stop_or_both_begin():
-    """As they are found by themselves, with stops that differ."""
-    system = one_mass(R=0.8, R_left=0.6)
-    b = vs.grazing(system).b
-    free = vs.continue_orbit(vs.periodic_orbit(system.replace(b=1.1 * b), itinerary=""), "b", (0.9 * b, 1.2 * b))
-    born = vs.switch(free.begins)
-    assert [one.itinerary for one in born] == ["LR", "R", "L"]
-    for one in born:
-        known = vs.periodic_orbit(one.system, itinerary=one.itinerary)
-        assert known.ok and np.abs(known.state - one.state).max() < 1e-9
-
-
 def test_windows_of_stops_that_differ_end_where_the_free_motion_grazes():
     system = one_mass(k_stop=50, k_stop_left=51)
     b = vs.grazing(system).b
@@ -90,24 +57,6 @@ def test_curves_of_doubled_orbits_with_contacts_begin_at_a_degenerate_flip(soft_
         assert fold.orbit.period == 2 and np.abs(fold.multipliers - 1).min() < 1e-9
         ends = [one.parameters for one in vs.bifurcation_curve(fold, along, box).special if one.type == point.type]
         assert any(one == pytest.approx(point.parameters, rel=1e-8) for one in ends)
-
-
-@pytest.mark.slow  # three masses, whose kernels no fast test compiles
-def test_the_orbit_beside_a_graze_comes_to_it():
-    """A flip 4.7e-5 away: at the first step beside the graze Newton's method finds the orbit of half the period."""
-    system = vs.Oscillator.named(
-        "chain", stop_at=3, stops="left", m=[0.7797221873246357, 0.9489295764871436, 1.664320727842913],
-        k=[1.6492019307110817, 0.35727377333468713, 1.1419131139769945, 0.7875386305639204],
-        c=[0.03660788332872998, 0.053583995651147305, 0.07054834832339184, 0.05325648631307066],
-        force=[0.2817669532093734, 0.9306469503541055, -0.9447583526241936], omega=2.190224834822359,
-        k_stop=172.35122840490698, b=-0.10686188779515482, tau=2.3649488658101587, offset=-0.32,
-    )  # fmt: skip
-    graze = vs.continue_orbit(vs.periodic_orbit(system, itinerary="L", periods=2), "offset", (-0.45, 0.3)).begins
-    assert graze.type == "graze" and graze.orbit.period == 2
-    (orbit,) = vs.switch(graze)
-    assert (orbit.itinerary, orbit.period) == ("LL", 2)
-    ends = vs.continue_orbit(orbit, "offset", (-0.45, 0.3)).special
-    assert any(one.type == "graze" and one.parameters == pytest.approx(graze.parameters, abs=1e-14) for one in ends)
 
 
 BOTH = {"k_stop": 30.0, "k_stop_left": 30.0, "c_stop": 1.0, "c_stop_left": 1.0, "preload": 0.1, "preload_left": 0.1}
@@ -257,12 +206,13 @@ def test_where_a_contact_vanishes_on_a_curve_the_others_keep_their_speeds():
     flip = next(one for one in follow(drawn_case(1028)).special if one.type == "flip")
     values = flip.parameters["b"], flip.orbit.system.omega
     (point,) = points(vs.bifurcation_curve(flip, NAMES, [(0.7 * value, 1.3 * value) for value in values]), "flip_graze")
-    contacts = point.orbit.contacts
-    whole = point.orbit._solution
-    pushes = whole.pushes[np.argsort(whole.times % whole.P)]
-    speeds = np.abs(contacts["v_touch"][np.argsort(contacts["t_touch"])])
-    first = int(np.argmax(pushes)) - int(np.argmax(speeds))  # a touch at t = 0 may be the last one
-    assert pushes == pytest.approx(np.roll(speeds, first), abs=1e-12)
+    contacts = np.sort(point.orbit.contacts, order="t_touch")
+    flown = vs.simulate(point.orbit.system, point.orbit.state, point.orbit.period).contacts
+    lengths = contacts["t_release"] - contacts["t_touch"]
+    kept = contacts[lengths > 1e-7]  # the simulation may miss the one without length
+    assert len(kept) == len(contacts) - 1
+    for one in kept:
+        assert np.abs(flown["v_touch"] - one["v_touch"]).min() < 1e-9
     assert {one.type for one in vs.switch(point)} == {"flip", "graze"}
 
 

@@ -1,28 +1,14 @@
-"""Bifurcation curves in two parameters: closed forms, 30 digits, published values, differences."""
-
-import math
+"""Bifurcation curves in two parameters: closed forms, published values, where curves of longer orbits begin."""
 
 import numpy as np
 import pytest
-from support.branches import branch_of
-from support.curves import chosen, error_at, exact_codimension_two, exact_resonance, first, solution_at, types
+from support.curves import exact_resonance, first, types
+from support.in_digits import of_orbit
 from support.oscillators import PAPER
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.branches.criticality import criticality
-from vibro_sweep.analysis.continuation.starting_orbit import KINDS, Start
-from vibro_sweep.analysis.curves import born
-from vibro_sweep.analysis.curves.curve_points import others_outside
-from vibro_sweep.analysis.periodic.periodic_orbit import orbit_of
-from vibro_sweep.engine.continuation.conditions import TORUS
 
 BOXES = {("b", "omega"): ((0.3, 9), (0.5, 0.8)), ("b", "R"): ((0.3, 9), (0.3, 0.99))}
-
-
-def test_a_critical_pair_that_rounding_parts_counts_as_no_other():
-    """At the end of a Neimark-Sacker curve: both are near 1 or -1, one of them a little outside."""
-    pair = np.array([1.65, 1 + 4e-8, 1 - 4e-8, 0.08], complex)
-    assert others_outside(np.array([pair, -pair]), TORUS, np.array([0.0, np.pi])).tolist() == [1, 1]
 
 
 @pytest.mark.slow
@@ -77,76 +63,6 @@ def test_refusals(symmetric_branch):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("names", BOXES)
-@pytest.mark.parametrize("kind", ["pitchfork", "neimark_sacker"])
-def test_curves_in_30_digits(names, kind, symmetric_branch, one_sided_branch):
-    branch = symmetric_branch if kind == "pitchfork" else one_sided_branch
-    curve = vs.bifurcation_curve(first(branch, kind), names, BOXES[names])
-    for k in chosen(curve, 20):
-        assert error_at(curve, k) < 1e-12, k
-
-
-@pytest.mark.slow
-def test_margin_where_cells_are_passed_over(symmetric_branch):
-    """What is farther from the stops than at the point before is not looked at; that of a single orbit is."""
-    fold = first(branch_of(6.6, 13), "fold")
-    for special, bounds in (
-        (first(symmetric_branch, "pitchfork"), BOXES["b", "omega"]),
-        (fold, ((6, 7.5), (0.61, 0.65))),
-    ):
-        curve = vs.bifurcation_curve(special, ("b", "omega"), bounds)
-        margins = curve.points.stop_distance.values  # inf: there is no turning point
-        for k in range(0, len(margins), 5):
-            assert margins[k] == pytest.approx(solution_at(curve, k).stop_distance, rel=1e-8, abs=1e-10)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("b", "periods"), [(6.6, 13), (6.7125, 15)])
-def test_windows_in_30_digits(b, periods):
-    branch = branch_of(b, periods)
-    for special in branch.special:
-        if special.type in ("fold", "graze"):
-            curve = vs.bifurcation_curve(special, ("b", "omega"), ((6, 7.5), (0.61, 0.65)))
-            for k in chosen(curve, 4):
-                assert error_at(curve, k) < 1e-12, (special.type, k)
-
-
-@pytest.mark.slow
-def test_criticality_changes_at_the_degenerate_points(symmetric_branch, one_sided_branch):
-    """By the coefficient at neighbouring orbits."""
-    for branch, kind, most in ((symmetric_branch, "pitchfork", 2), (one_sided_branch, "neimark_sacker", 3)):
-        special = first(branch, kind)
-        curve = vs.bifurcation_curve(special, ("b", "omega"), BOXES["b", "omega"])
-        degenerate = [one for one in curve.special if one.type.startswith("degenerate")]
-        assert len(degenerate) == most
-        for one in degenerate:
-            b, omega = one.parameters["b"], one.parameters["omega"]
-            points = curve.points
-            k = int(np.argmin(np.hypot(points.b.values - b, points.omega.values - omega)))
-            found = [criticality_at(curve, j) for j in (k - 1, k + 1)]
-            assert sorted(found) == ["sub", "super"], one.parameters
-
-
-def criticality_at(curve, k):
-    return criticality(solution_at(curve, k), KINDS[curve.type], "b")
-
-
-REGULAR = ("fold_flip", "resonance_1_1", "resonance_1_2", "resonance_1_3", "resonance_1_4", "fold_neimark_sacker")
-
-
-@pytest.mark.slow
-def test_codimension_two_in_40_digits(symmetric_branch, one_sided_branch):
-    found = set()
-    for special in (first(symmetric_branch, "pitchfork"), first(one_sided_branch, "neimark_sacker")):
-        curve = vs.bifurcation_curve(special, ("b", "omega"), BOXES["b", "omega"])
-        for one in curve.special:
-            if one.type in (*REGULAR, "flip_neimark_sacker"):
-                assert max(exact_codimension_two(one).values()) < max(one.error, 1e-13) < 1e-12, one.type
-                found.add(one.type)
-    assert found == {*REGULAR, "flip_neimark_sacker"}
-
-
-@pytest.mark.slow
 def test_resonances_of_the_free_motion_in_40_digits(symmetric_branch, one_sided_branch):
     """reference_values.md: gamma = 0 at zero delay; for one impact in T or T/2, followed from impact to graze."""
     published = {
@@ -171,26 +87,6 @@ def test_resonances_of_the_free_motion_in_40_digits(symmetric_branch, one_sided_
 
 
 @pytest.mark.slow
-def test_every_way_into_the_net_of_curves_gives_the_same_points(symmetric_branch):
-    """From each point of codimension two on a curve, its curves are followed anew."""
-    bounds = BOXES["b", "omega"]
-    curve = vs.bifurcation_curve(first(symmetric_branch, "pitchfork"), ("b", "omega"), bounds)
-    expected = places(curve)
-    folds, followed = [], 0
-    for special in curve.special[1:-1]:
-        for start in vs.switch(special):
-            if start.type in ("pitchfork", "fold") and start.orbit.symmetric:
-                other = vs.bifurcation_curve(start, ("b", "omega"), bounds)
-                if start.type == "pitchfork":
-                    assert places(other) == [(kind, pytest.approx(where, abs=1e-12)) for kind, where in expected]
-                    followed += 1
-                else:
-                    folds.append(places(other))
-    assert followed == len(curve.special) - 2 and len(folds) == 2
-    assert folds[0] == [(kind, pytest.approx(where, abs=1e-12)) for kind, where in folds[1]]
-
-
-@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["degenerate_flip", "flip_neimark_sacker", "resonance_1_4"])
 def test_curves_of_longer_orbits_end_where_switch_says_that_they_begin(kind, symmetric_branch, one_sided_branch):
     branch, of_type = (
@@ -203,8 +99,8 @@ def test_curves_of_longer_orbits_end_where_switch_says_that_they_begin(kind, sym
         if special.type != kind:
             continue
         size = len(special.orbit.impacts) * (4 if kind == "resonance_1_4" else 1)
-        half = special.orbit._solution.K
-        starts = [start for start in vs.switch(special) if start.orbit._solution.K > half]
+        half = len(of_orbit(special.orbit).events)
+        starts = [start for start in vs.switch(special) if len(of_orbit(start.orbit).events) > half]
         assert all(start.orbit.ok and len(start.orbit.impacts) == size for start in starts)
         assert len(starts) == (2 if kind == "resonance_1_4" else 1)
         ends = []
@@ -217,24 +113,6 @@ def test_curves_of_longer_orbits_end_where_switch_says_that_they_begin(kind, sym
             found += 1
         assert len(ends) == 1 or ends[0] != pytest.approx(ends[1], rel=1e-3)  # two curves, not one twice
     assert found == {"degenerate_flip": 2, "flip_neimark_sacker": 1, "resonance_1_4": 2}[kind]
-
-
-@pytest.mark.slow
-def test_normal_form_of_the_resonance_1_4_says_where_the_folds_are(one_sided_branch):
-    """At the amplitude 0.005, which is that of the third order and no more."""
-    curve = vs.bifurcation_curve(first(one_sided_branch, "neimark_sacker"), ("b", "omega"), BOXES["b", "omega"])
-    special = first(curve, "resonance_1_4")
-    values = np.array(list(special.parameters.values()))
-    parent = Start("neimark_sacker", special.orbit._solution, theta=math.pi / 2)
-    for sign in (1, -1):
-        entry = born.entry(special, "fold", parent, 4, 0.005, sign)
-        found = np.array(list(born.entered(special, entry).parameters.values()))
-        assert np.abs(found - values - entry.moved).max() < 0.01 * np.abs(entry.moved).max()
-
-
-def places(curve):
-    found = [(special.type, list(special.parameters.values())) for special in curve.special]
-    return found if found[0][1] < found[-1][1] else found[::-1]
 
 
 @pytest.mark.slow
@@ -255,21 +133,6 @@ def test_the_fold_of_asymmetric_orbits_begins_where_the_pitchfork_turns_from_sup
     )
     assert end.parameters == pytest.approx(nearest.parameters, abs=1e-12)
     assert "cusp" in types(fold)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("names", [("b", "omega"), ("omega", "mu_m"), ("b", "R")])
-def test_states_of_points_are_those_of_the_orbits(names, symmetric_branch, one_sided_branch):
-    specials = [first(symmetric_branch, "pitchfork"), one_sided_branch.ends, first(one_sided_branch, "neimark_sacker")]
-    for special in specials:
-        here = special.parameters | {"omega": 0.63, "mu_m": 10.0, "R": 0.8}
-        bounds = tuple((here[name] - 0.05 * abs(here[name]), here[name] + 0.05 * abs(here[name])) for name in names)
-        curve = vs.bifurcation_curve(special, names, bounds)
-        states = np.stack([curve.points[name].values for name in ("x1", "v1", "x2", "v2")], axis=-1)
-        assert len(states) > 8
-        for k in range(0, len(states), 3):
-            orbit = orbit_of(None, solution_at(curve, k))
-            assert states[k] == pytest.approx(orbit.state, abs=1e-11 * np.abs(orbit.state).max()), (special.type, k)
 
 
 @pytest.mark.slow

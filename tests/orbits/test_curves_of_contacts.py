@@ -1,42 +1,55 @@
-"""Curves of orbits with contacts as arrays and files: their points have the same orbits again."""
+"""Curves of orbits with contacts in files: their points have the same orbits again."""
 
 import numpy as np
 import pytest
+import xarray as xr
 from support import compliant_curves, slow_cases
 from support.compliant_branches import drawn_case, follow
+from support.scene_texts import parsed
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.curves.curve_arrays import arrays_of, curve_of
-from vibro_sweep.analysis.curves.curve_search import Curves, seed_at
 
 
 @pytest.mark.slow  # four masses, whose kernels no fast test compiles
-def test_a_curve_that_begins_at_a_flip_has_its_contacts_where_the_phase_of_the_force_moves():
+def test_a_curve_that_begins_at_a_flip_has_its_contacts_where_the_phase_of_the_force_moves(tmp_path):
     """With tau = "grazing" an end has a phase of the force of its own; half of its doubled orbit is as it was."""
     special = next(one for one in follow(drawn_case(194)).special if one.type == "graze")
     curve = vs.bifurcation_curve(special, ("b", "omega"), ((0.1, 0.14), (0.65, 0.76)))
     assert curve.begins.type == "flip_graze"
-    arrays, alone = arrays_of(curve), curve.begins.orbit.contacts
-    touch, *lengths = np.sort(arrays["impact_t_off"] - arrays["impact_t"], axis=1).T
-    assert abs(touch[0]) < 1e-12
-    twice = np.sort(np.tile(alone["t_release"] - alone["t_touch"], 2))
-    np.testing.assert_allclose([length[0] for length in lengths], twice, rtol=1e-9)
+    alone = curve.begins.orbit.contacts
+    with xr.open_dataset(curve.save(tmp_path / "curve.h5"), engine="h5netcdf") as data:
+        lengths = (data["impact_t_off"] - data["impact_t"]).values.reshape(data.sizes["point"], -1)
+    touch, *others = np.sort(lengths[0])
+    assert abs(touch) < 1e-12
+    np.testing.assert_allclose(others, np.sort(np.tile(alone["t_release"] - alone["t_touch"], 2)), rtol=1e-9)
     assert np.isfinite(curve.points.multiplier_re.values[0]).all()
 
 
-def test_curves_of_contacts_come_back_from_files_and_know_their_own_points(tmp_path):
-    """They came back as impacts, and a search did not see that a point lies on a curve."""
+def test_curves_of_contacts_come_back_from_files(tmp_path):
+    """They came back as impacts."""
     system = vs.Oscillator.named("one_mass", k=1, zeta=0.05, F=0.5, omega=0.8, b=1, tau=0.0, stops="right", k_stop=29)
     branch = vs.continue_orbit(vs.periodic_orbit(system, itinerary="R"), "omega", (0.3, 3))
     flip = next(one for one in branch.special if one.type == "flip")
-    names, bounds = ("omega", "k_stop"), np.array(((0.3, 3), (5, 100)))
-    curve = vs.bifurcation_curve(flip, names, bounds)
-    curve.save(tmp_path / "curve.h5")
-    for one, again in zip(curve.special, vs.load(tmp_path / "curve.h5").special, strict=True):
-        assert np.abs(one.orbit.state - again.orbit.state).max() < 1e-12
-        assert len(one.orbit.contacts) == len(again.orbit.contacts) > 0
-        assert np.abs(one.multipliers - again.multipliers).max() < 1e-9
-    assert Curves(names, bounds, ()).passes(arrays_of(curve), seed_at(flip, names))
+    curve = vs.bifurcation_curve(flip, ("omega", "k_stop"), ((0.3, 3), (5, 100)))
+    again = vs.load(curve.save(tmp_path / "curve.h5"))
+    for one, other in zip(curve.special, again.special, strict=True):
+        assert np.abs(one.orbit.state - other.orbit.state).max() < 1e-12
+        assert len(one.orbit.contacts) == len(other.orbit.contacts) > 0
+        assert np.abs(one.multipliers - other.multipliers).max() < 1e-9
+
+
+SEARCH = """
+system: {type: one_mass, k: 1, zeta: 0.05, F: 0.5, omega: 0.8, b: 1, tau: 0, stops: right, k_stop: 29}
+continue: {from: {itinerary: R}, parameter: {omega: [0.3, 3], F: [0.05, 1.5]}, of: [fold], depth: 0}
+"""
+
+
+@pytest.mark.slow
+def test_a_search_follows_a_curve_of_contacts_once(tmp_path):
+    """Its branch has two folds, and both lie on one curve: a search did not see that the second is known."""
+    vs.run(parsed(SEARCH), tmp_path / "curves.h5")
+    (curve,) = vs.load(tmp_path / "curves.h5")
+    assert curve.type == "fold" and "cusp" in [one.type for one in curve.special]
 
 
 THREE_MASSES = slow_cases((6, {"closed"}))  # each number of masses compiles kernels of its own
@@ -44,7 +57,7 @@ THREE_MASSES = slow_cases((6, {"closed"}))  # each number of masses compiles ker
 
 @pytest.mark.slow
 @pytest.mark.parametrize("seed, types", [*THREE_MASSES, (8, {"flip_graze"}), (26, {"resonant_graze"})])
-def test_points_of_codimension_two_are_the_same_from_their_arrays(seed, types):
+def test_points_of_codimension_two_are_the_same_from_a_file(seed, types, tmp_path):
     """Those at the birth of doubled orbits, where a touch vanishes, and where a curve comes back to its first point."""
     case, met = drawn_case(seed), set()
     for special in [one for one in follow(case).special if one.type in compliant_curves.TYPES][:3]:
@@ -52,9 +65,8 @@ def test_points_of_codimension_two_are_the_same_from_their_arrays(seed, types):
         values = special.parameters[case.name], special.orbit.system.numbers[names[1]]
         bounds = [(0.6 * value, 1.4 * value) for value in values]
         curve = vs.bifurcation_curve(special, names, bounds)
-        for one, again in zip(
-            curve.special, curve_of(arrays_of(curve), names, special.orbit.system).special, strict=True
-        ):
+        saved = vs.load(curve.save(tmp_path / f"{len(met)}-{special.parameters[case.name]}.h5"))
+        for one, again in zip(curve.special, saved.special, strict=True):
             met.add(one.type)
             for name in ("itinerary", "period", "status"):
                 assert getattr(one.orbit, name) == getattr(again.orbit, name)

@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from support import slow_cases
-from support.branches import repeated
 from support.oscillators import CHAIN, PAPER
 
 import vibro_sweep as vs
@@ -30,7 +29,7 @@ DAMPER = vs.Oscillator.named("ball_in_cavity", mass_ratio=0.27, zeta=0.116, F=0.
 )
 def test_slopes_of_a_long_orbit_are_those_of_the_short_one(system, name):
     short = vs.periodic_orbit(system, itinerary="LR")._solution
-    solution, times = repeated(vs.periodic_orbit(system, itinerary="LR"), 80), 80 if short.sigma == 1 else 160
+    solution, times = short.whole().repeated(80), 80 if short.sigma == 1 else 160
     slope, K = solution.family.derivative(name), short.K
     found, one = Linearised(solution, slope).slopes(), Linearised(short, slope).slopes()
     later = -short.P * slope.omega / solution.family.linear.omega  # dP/dp
@@ -57,7 +56,7 @@ def test_slopes_of_the_rates_are_those_of_differences(system):
 def test_the_critical_direction_of_a_long_orbit():
     """A pitchfork of the paper's oscillator, written out: J(1) of 81 half orbits is singular as J(-1) of one is."""
     orbit = vs.periodic_orbit(PAPER.replace(b=3.892819435563419), itinerary="LR")
-    short, solution = orbit._solution, repeated(orbit, 61)
+    short, solution = orbit._solution, orbit._solution.whole().repeated(61)
     one, found = Linearised(short).critical_direction(-1), Linearised(solution).critical_direction(1)
     signs = (-1.0) ** np.arange(122)
     expected = np.concatenate([one[0] * signs, -short.sigma * one[1] * np.ones(122)])
@@ -67,7 +66,7 @@ def test_the_critical_direction_of_a_long_orbit():
 def test_long_orbit_is_followed_like_the_short_one():
     """61 periods of the one-sided orbit written out: each of them is what the short orbit is."""
     short = vs.periodic_orbit(PAPER.replace(b=4.0), itinerary="R")
-    long = repeated(short, 61)
+    long = short._solution.whole().repeated(61)
     start = followed_from(long, "b", 1.0)
     point = start.curve.step(start, 0.01)
     found = vs.periodic_orbit(PAPER.replace(b=point.value), itinerary="R")
@@ -77,7 +76,7 @@ def test_long_orbit_is_followed_like_the_short_one():
 
 @pytest.mark.parametrize("system", [PAPER, *slow_cases(CHAIN)])
 def test_newton_finds_a_long_orbit(system):
-    long = repeated(vs.periodic_orbit(system, itinerary="LR"), 35)
+    long = vs.periodic_orbit(system, itinerary="LR")._solution.whole().repeated(35)
     rng = np.random.default_rng(0)
     near = replace(long, u=long.u * (1 + 1e-6 * rng.normal(size=len(long.u))))
     found = near.corrected()

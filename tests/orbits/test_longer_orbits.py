@@ -2,14 +2,14 @@
 
 import numpy as np
 import pytest
-from support.curves import chosen, solution_at
+from support import conditions
+from support.curves import chosen
+from support.in_digits import of_orbit, of_point
 from support.oscillators import PAPER
 from support.random_curves import simulate_beside
 from support.searching import new_report
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.periodic.periodic_orbit import orbit_of
-from vibro_sweep.engine.period_map import PeriodMap
 
 NAMES, BOX = ("b", "omega"), ((0.3, 9), (0.5, 0.8))
 
@@ -24,16 +24,26 @@ def first(found, kind):
 
 
 def longer(special, kind="neimark_sacker"):
-    K = special.orbit._solution.K
-    return [start for start in vs.switch(special) if start.type == kind and start.orbit._solution.K > K]
+    K = size(special.orbit)
+    return [start for start in vs.switch(special) if start.type == kind and size(start.orbit) > K]
 
 
-def pair_of(system, state, period):
-    """The complex multiplier, by the variational equations along the simulated orbit."""
-    mapped = PeriodMap(system)(np.array([state]), periods=period, jacobian=True)
-    assert np.abs(mapped.states[0] - state).max() < 1e-9
-    mu = np.linalg.eigvals(mapped.jacobian[0])
-    return mu[np.argmin(np.where(mu.imag > 0, np.abs(np.abs(mu) - 1), np.inf))]
+def size(orbit) -> int:
+    """Impacts, of half the period where it is symmetric."""
+    return len(of_orbit(orbit).events)
+
+
+def nearest_pair(mu, axis=-1):
+    """Of each row the multiplier above the real axis that is nearest to the unit circle."""
+    where = np.argmin(np.where(mu.imag > 0, np.abs(np.abs(mu) - 1), np.inf), axis=axis)
+    return np.take_along_axis(mu, np.expand_dims(where, axis), axis).squeeze(axis)
+
+
+def pair_of(orbit):
+    """The complex multiplier, by saltation matrices."""
+    found, *_ = conditions.at_point(orbit)
+    assert found.off[0] < 1e-9
+    return nearest_pair(np.linalg.eigvals(found.matrix[0]))
 
 
 def check(special, start, names=NAMES, bounds=BOX):
@@ -41,16 +51,15 @@ def check(special, start, names=NAMES, bounds=BOX):
     curve = vs.bifurcation_curve(start, names, bounds, virtual=False)
     (end,) = (one for one in (curve.begins, curve.ends) if one.type == special.type)
     assert end.parameters == pytest.approx(special.parameters, abs=1e-11)
-    theta = curve._rows.p[:, 2]
+    multipliers = curve.points.multiplier_re.values + 1j * curve.points.multiplier_im.values
+    theta = np.angle(nearest_pair(multipliers))
     away = np.flatnonzero(~curve.points.virtual.values & (theta > 0.3 * theta.max()))  # at its end mu is double
     for k in away[(len(away) * np.array([0.2, 0.5, 0.8])).astype(int)]:
-        solution, sizes = solution_at(curve, k), []
-        system = special.orbit.system.replace(**{name: float(curve.points[name][k]) for name in names})
+        motion, sizes = of_point(curve, k, start.orbit), []
+        system, state = motion.system, motion.sample([0.0])[0]
         for part in (-1e-6, 0.0, 1e-6):
             other = system.replace(**{names[0]: getattr(system, names[0]) * (1 + part)})
-            orbit = orbit_of(system, solution)
-            found = vs.periodic_orbit(other, state=orbit.state, periods=orbit.period) if part else orbit
-            mu = pair_of(other, found.state, found.period)
+            mu = pair_of(vs.periodic_orbit(other, state=state, periods=start.orbit.period))
             if not part:
                 assert abs(mu) == pytest.approx(1, abs=1e-9)
                 assert np.cos(np.angle(mu)) == pytest.approx(np.cos(theta[k]), abs=1e-9)
@@ -115,14 +124,14 @@ def test_grazes_of_the_orbits_that_are_born(kind, one_sided_branch, asymmetric_g
     )  # from the other curve the motion has no impact there, it touches the stop
     assert again.touches and not special.touches
     for one in (special, again):
-        (start,) = (start for start in vs.switch(one) if start.type == "graze" and start.orbit._solution.K == 3)
+        (start,) = (start for start in vs.switch(one) if start.type == "graze" and size(start.orbit) == 3)
         curve = vs.bifurcation_curve(start, NAMES, bounds, virtual=False)
         (end,) = (end for end in (curve.begins, curve.ends) if end.type == kind)
         assert end.parameters == pytest.approx(special.parameters, abs=1e-11)
         report = new_report()
         for k in chosen(curve, 9)[1:-1]:
-            t, P = curve.points.impact_t[k].values, solution_at(curve, k).P
+            t, P = curve.points.impact_t[k].values, of_point(curve, k, start.orbit).P
             assert np.abs((t + P / 2 - t[:, None] + P / 4) % P - P / 4).min() > 1e-4  # no orbit taken twice
-            simulate_beside(report, curve, k, kind)
+            simulate_beside(report, curve, k, kind, start.orbit)
         assert report.counted["points"] >= 6 and report.wrong == []
         assert len({(one.type, *one.parameters.values()) for one in curve.special}) == len(curve.special)

@@ -31,7 +31,7 @@ def test_a_closed_curve():
     points = np.column_stack([curve.points.b, curve.points.R])
     steps = np.linalg.norm(np.diff(points / np.ptp(points, axis=0), axis=0), axis=1)
     assert np.linalg.norm((points[-1] - points[0]) / np.ptp(points, axis=0)) < 2 * steps.max()
-    other = vs.bifurcation_curve(special_at(curve, 40, fold), ("b", "R"), bounds)
+    other = vs.bifurcation_curve(special_at(curve, 40, fold.orbit), ("b", "R"), bounds)
     assert other.closed
     keys = [sorted(key(one) for one in found.special if one.type != "closed") for found in (curve, other)]
     assert [kind for kind, *_ in keys[0]] == [kind for kind, *_ in keys[1]]

@@ -5,14 +5,10 @@ import pytest
 from mpmath import mp, mpf
 from reference.closed_orbit import DIGITS, ClosedOrbit
 from reference.machine import machine_of
-from support import sample, slow_cases
-from support.compliant_bifurcations import distance_in_digits
+from support import sample
+from support.in_digits import errors_of
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.continuation.first_point import first_place
-from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve
-from vibro_sweep.analysis.curves.curve_start import start_at
-from vibro_sweep.engine.continuation import stepper
 
 
 def one_mass(**numbers):
@@ -31,8 +27,7 @@ def test_special_points_in_45_digits(preload):
     types = [one.type for one in branch.special]
     assert types[0] == types[-1] == "graze" and {"flip", "fold"} <= set(types)
     for special in branch.special:
-        off, change = distance_in_digits(special, pulled=preload > 0)
-        assert change < 1e-16 and np.abs(off).max() < 1e-12
+        assert np.abs(errors_of(special, pulled=preload > 0)).max() < 1e-12
 
 
 def touching_in_digits(special):
@@ -106,29 +101,6 @@ def test_stops_that_have_not_relaxed_are_refused():
     assert vs.periodic_orbit(one_mass(c_stop=5.8), itinerary="R").status == "unrelaxed" and preloaded.ok
     again = vs.simulate(preloaded.system, preloaded.state, 20)
     assert preloaded.stable and again.section[-1] == pytest.approx(preloaded.state, abs=1e-10)
-
-
-@pytest.mark.parametrize("names, bounds", [
-    (("omega", "F"), ((0.3, 3), (0.2, 1))),
-    *slow_cases(
-        (("omega", "k_stop"), ((0.3, 3), (20, 40))),
-        (("c_stop", "omega"), ((0, 3), (0.3, 3))),
-        (("preload", "zeta"), ((0, 1), (0, 0.3))),
-    ),
-])  # fmt: skip
-def test_newton_converges_on_curves(names, bounds):
-    """The gradient of a condition is exact: changes fall to rounding, in two steps by their squares."""
-    for special in branch_of("omega", (0.3, 3), c_stop=2.0, preload=0.0).special:
-        if special.type == "graze" and "preload" in names:
-            continue  # at preload 0 grazes change their kind
-        curve = SolutionCurve(start_at(special, names), names, bounds)
-        place = first_place(curve)
-        place.x[:] += 1e-4 * np.cos(np.arange(place.x.size)).reshape(place.x.shape)
-        changes = []
-        for _ in range(7):
-            curve.take_numbers(place)
-            changes.append(curve.run_task(stepper.CORRECT, place, place.direction))
-        assert changes[6] < 1e-12 and changes[4] < 10 * changes[2] ** 1.5 + 1e-14, (special.type, changes)
 
 
 def test_a_curve_of_grazes_says_where_a_corner_begins_with_a_flip():

@@ -6,10 +6,8 @@ from reference.flow import matrix_of
 from reference.gmp import expm
 from reference.machine import machine_of
 
-from support.branches import located
-from support.compliant_bifurcations import ANGLES, CONDITIONS
+from support.in_digits import CONDITIONS, SLOW_IN_SIMULATION, moved_by, of_point, turning_points, vanishing, without
 from support.oscillators import PAPER
-from vibro_sweep.analysis.periodic.solution import Solution
 
 SLOWEST = 1e-4  # impact speed: below it the reference's monodromy matrix is next to its pole
 
@@ -26,23 +24,11 @@ def first(branch, kind):
 
 def chosen(curve, count):
     """Indices of `count` points along the real part of a curve, where no impact but the grazing one is very slow."""
-    points = curve.points
-    speeds = np.abs(points.impact_v.values)
+    speeds = np.abs(curve.points.impact_v.values)
     if curve.type == "graze":
-        speeds = np.delete(speeds, curve._solution_curve.problem.index, axis=1)
-    allowed = np.flatnonzero(~points.virtual.values & (speeds.min(axis=1, initial=np.inf) > SLOWEST))
+        speeds = np.delete(speeds, np.argmin(speeds.max(axis=0)), axis=1)
+    allowed = np.flatnonzero(~curve.points.virtual.values & (speeds.min(axis=1, initial=np.inf) > SLOWEST))
     return allowed[np.linspace(0, len(allowed) - 1, count).round().astype(int)]
-
-
-def solution_at(curve, k) -> Solution:
-    """The orbit of a point, from what `points` says."""
-    points, start = curve.points, curve._solution_curve.orbit
-    family = start.family.replace(**{name: float(points[name][k]) for name in curve.parameters})
-    sides = points.impact_side[k].values
-    D = -(1 + family.linear.restitution(sides)) * points.impact_v[k].values
-    return Solution(
-        family, start.sigma, start.half_periods, start.sides, np.concatenate([points.impact_t[k].values, D])
-    )
 
 
 def steepest(curve, k) -> str:
@@ -53,19 +39,15 @@ def steepest(curve, k) -> str:
     return curve.parameters[int(np.argmin(changes))]
 
 
-def error_at(curve, k) -> float:
-    """The error of one parameter of a point, the other one as it is."""
-    solution, name = solution_at(curve, k), steepest(curve, k)
-    kinds = {"fold": "fold", "flip": "flip", "pitchfork": "flip", "neimark_sacker": "pair"}
-    condition = kinds.get(curve.type) or ("vanishing", curve._solution_curve.problem.index)
-    return abs(located(solution, [name], [condition])[0] / solution.family.numbers[name])
-
-
-def exact_codimension_two(special) -> dict[str, float]:
-    """By how much both parameters of a point of codimension two with regular multipliers are off."""
-    names, angle = list(special.parameters), ANGLES.get(special.type)
-    off = located(special.orbit._solution, names, CONDITIONS[special.type], angle=angle)
-    return {name: abs(value) for name, value in zip(names, off, strict=True)}
+def error_at(curve, k, orbit) -> float:
+    """The relative error of one parameter of a point, the other one as it is; orbit: where the curve was begun."""
+    motion, touches, name = of_point(curve, k, orbit), [], steepest(curve, k)
+    if curve.type == "graze":
+        motion = without(motion, vanishing(motion, SLOW_IN_SIMULATION))
+        touches = turning_points(motion)[:1]
+    value = float(curve.points[name][k])
+    (off,) = moved_by(motion, {name: value}, CONDITIONS[curve.type], touches)
+    return abs(off / value)
 
 
 def exact_resonance(sigma, ratio, omega, digits=40) -> float:

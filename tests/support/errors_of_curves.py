@@ -3,8 +3,7 @@
 import numpy as np
 
 import vibro_sweep as vs
-from support.codimension_two import error_of, slow_impacts
-from support.curves import exact_codimension_two
+from support.in_digits import errors_of, of_orbit, vanishing
 from support.random_branches import attractors, random_system
 from support.searching import Report, new_report, size
 
@@ -49,11 +48,10 @@ def ratios(seed: int) -> list[float]:
     """Errors over stated errors, of both parameters together or each by itself."""
     result = []
     for special in points(seed):
-        solution = special.orbit._solution
-        if special.type == "double_graze" and len(slow_impacts(solution)) == solution.K:  # the free motion's: its own
-            continue  # equations are singular there (test_crossed_curves.py)
+        motion = of_orbit(special.orbit)
+        if special.type == "double_graze" and len(vanishing(motion)) == len(motion.events):  # the free motion's: its
+            continue  # own equations are singular there (the row "from an impact to the free motion" of curves.yaml)
         for types, most in MOST_IMPACTS.items():
             if special.type in types and len(special.orbit.impacts) <= most:
-                exact = exact_codimension_two(special) if types is OF_MONODROMY else {"": error_of(special)}
-                result += [value / special.error for value in exact.values()]
+                result += [abs(off) / special.error for off in errors_of(special)]
     return result

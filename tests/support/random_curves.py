@@ -1,21 +1,21 @@
 """Bifurcation curves of random systems, held against simulation, and against the same curves from other points and
 with other steps."""
 
-from dataclasses import replace
-
 import numpy as np
 
 import vibro_sweep as vs
-from support.curves import chosen, solution_at
+from support.curves import chosen, steepest
+from support.in_digits import of_point
 from support.random_branches import attractors, random_system
 from support.searching import Report, new_report
-from vibro_sweep.analysis.branches.branch_run import stop_and_impact
-from vibro_sweep.analysis.periodic.periodic_orbit import orbit_of
 from vibro_sweep.types import SpecialPoint
 
 TYPES = ("fold", "flip", "pitchfork", "neimark_sacker", "graze")
 CLOSE = 1e-9  # of the state after a period of simulation, relative, times the largest multiplier
 BESIDE = 1e-4  # relative distance of the two sides from a point
+CROSSED = 1e-4  # relative: of both ends of a branch that crosses a curve
+SAME = 1e-9  # relative: of a point of a curve and the special point there
+NEAR = 0.1  # of the state: orbits there are no farther
 
 
 def study(seed: int, most_curves=4) -> Report:
@@ -43,9 +43,10 @@ def _follow(report: Report, seed: int, special, rng) -> None:
     if any(end.type == "failed" for end in (curve.begins, curve.ends)):
         report.wrong.append(f"{where}: failed")
     for k in chosen(curve, 3):
-        simulate_beside(report, curve, k, where)
-    k = int(rng.choice(chosen(curve, 9)))
-    ways = {f"from point {k}": vs.bifurcation_curve(special_at(curve, k, special), ("b", "omega"), bounds)}
+        simulate_beside(report, curve, k, where, special.orbit)
+    k, ways = int(rng.choice(chosen(curve, 9)[1:-1])), {}  # the ends lie on the bounds
+    if (other := special_at(curve, k, special.orbit)) is not None:
+        ways[f"from point {k}"] = vs.bifurcation_curve(other, ("b", "omega"), bounds)
     for factor in (0.5, 2.0):
         again = vs.bifurcation_curve(special, ("b", "omega"), bounds, step=factor)
         ways[f"with steps of {factor} times the length"] = again
@@ -65,37 +66,39 @@ def key(special):
     return special.type, *(float(f"{value:.10g}") for value in special.parameters.values())
 
 
-def special_at(curve, k, special) -> SpecialPoint:
-    solution = solution_at(curve, k)
-    names = curve.parameters
-    system = special.orbit.system.replace(**{name: float(curve.points[name][k]) for name in names})
-    impact = stop_and_impact(solution, curve._solution_curve.problem.index)[1] if curve.type == "graze" else None
-    parameters = {name: solution.family.numbers[name] for name in names}
-    return SpecialPoint(curve.type, parameters, orbit_of(system, solution), np.empty(0), impact=impact)
+def special_at(curve, k, orbit) -> SpecialPoint | None:
+    """The special point of the branch that crosses a curve at one of its points; None where no orbit is found beside.
+
+    orbit: that of the special point where the curve was begun
+    """
+    motion, name = of_point(curve, k, orbit), steepest(curve, k)
+    value, state = float(curve.points[name][k]), motion.sample([0.0])[0]
+    for distance in (CROSSED * value, -CROSSED * value):
+        system = motion.system.replace(**{name: value + distance})
+        try:
+            beside = vs.periodic_orbit(system, state=state, periods=orbit.period)
+        except ValueError:  # the state is behind a stop there
+            continue
+        if beside.ok and (beside.period, beside.symmetric) == (orbit.period, motion.sigma < 0):
+            ends = sorted((value - distance, value + 2 * distance))
+            for special in vs.continue_orbit(beside, name, ends).special:
+                if special.type == curve.type and abs(special.parameters[name] - value) < SAME * abs(value):
+                    return special
+    return None
 
 
-def simulate_beside(report: Report, curve, k, where: str) -> None:
+def simulate_beside(report: Report, curve, k, where: str, orbit) -> None:
     """The orbit on each side of the curve, where there is one, is the motion that the engine computes."""
-    solution = solution_at(curve, k)
-    if curve.type == "graze":
-        keep = np.delete(np.arange(solution.K), curve._solution_curve.problem.index)
-        sides = tuple(solution.sides[i] for i in keep)
-        u = np.concatenate([solution.times[keep], solution.jumps[keep]])
-        solution = replace(solution, sides=sides, u=u)
+    motion = of_point(curve, k, orbit)
+    state = motion.sample([0.0])[0]
     for sign in (-1, 1):
-        family = solution.family.replace(b=solution.family.numbers["b"] * (1 + sign * BESIDE))
-        found = replace(solution, family=family).corrected()
-        if found is None or not found.real:
+        system = motion.system.replace(b=motion.system.b * (1 + sign * BESIDE))
+        beside = vs.periodic_orbit(system, state=state, periods=orbit.period)
+        if not beside.ok or np.abs(beside.state - state).max() > NEAR * np.abs(state).max():
             continue  # beyond a fold or a graze
-        orbit = orbit_of(_system(curve, family), found)
-        run = vs.simulate(orbit.system, orbit.state, orbit.period)
-        size = np.abs(run.section).max() * max(1.0, np.abs(orbit.multipliers).max())
-        error = np.abs(run.section[-1] - orbit.state).max() / size
+        run = vs.simulate(system, beside.state, beside.period)
+        size = np.abs(run.section).max() * max(1.0, np.abs(beside.multipliers).max())
+        error = np.abs(run.section[-1] - beside.state).max() / size
         report.counted["points"] += 1
-        if error > CLOSE or len(run.impacts) != len(orbit.impacts):
+        if error > CLOSE or len(run.impacts) != len(beside.impacts):
             report.wrong.append(f"{where}: point {k} differs from simulation by {error:.1e}")
-
-
-def _system(curve, family) -> vs.System:
-    system = curve.special[0].orbit.system
-    return system.replace(**{name: family.numbers[name] for name in curve.parameters})

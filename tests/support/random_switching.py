@@ -6,6 +6,7 @@ from itertools import combinations
 import numpy as np
 
 import vibro_sweep as vs
+from support.branch_rows import middle
 from support.drawn_oscillators import positive
 from support.random_branches import random_oscillator, random_system, within
 from support.searching import Report, new_report
@@ -186,10 +187,10 @@ def _simulated(report: Report, where: str, orbit) -> None:
 
 def _kind(branch) -> tuple:
     """Equal for branches of orbits that may be the same ones."""
-    whole = branch._start.whole()
-    sides = np.array(whole.sides, int)
+    orbit = middle(branch)
+    sides = np.array([1 if letter == "R" else -1 for letter in orbit.itinerary], int)
     rotations = [np.roll(sign * sides, k).tolist() for sign in (1, -1) for k in range(max(len(sides), 1))]
-    return min(rotations), whole.half_periods
+    return min(rotations), orbit.period
 
 
 def _same(one, other, name: str) -> bool:
@@ -209,7 +210,7 @@ def _same(one, other, name: str) -> bool:
         guess = list(zip(t, here.impact_side.values, v, strict=True))
         if not guess:
             return True
-        found = vs.periodic_orbit(system, guess=guess, periods=other._start.whole().half_periods // 2)
+        found = vs.periodic_orbit(system, guess=guess, periods=middle(other).period)
         if not found.ok:
             continue
         T, n = system.period, found.period
