@@ -30,7 +30,7 @@ SMALL = ("random", "attractors")
 )
 def test_workers_do_not_matter(tmp_path, name):
     one = run(tmp_path, *EVERY[name], workers=1)
-    assert np.all(one["status"] == 0)
+    assert np.isin(one["status"], (0, 6)).all()
     for workers in (2, 3):
         assert_same_bits(run(tmp_path, *EVERY[name], workers=workers), one)
 
