@@ -50,9 +50,9 @@ def test_points_of_a_stack_are_those_of_its_oscillators(count):
         system, name = drawn(rng)
         size = 3 if name == "offset" else 1.0
         values = size * np.sort(rng.uniform(0.01, 1, int(rng.integers(2, 12))))
-        table, kind = table_of(system, {name: values}, frames=True)
+        table, kind, _ = table_of(system, {name: values}, frames=True)
         for i, value in enumerate(values):
-            alone, own = table_of(system, {name: values[i : i + 1]}, frames=True)
+            alone, own, _ = table_of(system, {name: values[i : i + 1]}, frames=True)
             if own == kind:  # else the oscillators together need other kernels
                 assert alone.tobytes() == table[i : i + 1].tobytes(), (system, name, value)
         different += len({one.tobytes() for one in table})
@@ -75,7 +75,7 @@ def test_a_stack_is_built_as_each_oscillator_is(count):
 def test_where_a_state_is_measured_from_does_not_depend_on_other_points():
     """Stops at 2 and 4 lie on one side of 0, those at -2 and 8 do not."""
     ball = vs.Oscillator.named("one_mass", k=1, zeta=0.05, F=1, omega=0.8, R=0.7, b=1, offset=3)
-    table, _ = table_of(ball, {"b": np.array([1.0, 5.0])}, frames=False)
+    table, *_ = table_of(ball, {"b": np.array([1.0, 5.0])}, frames=False)
     assert table["origin"][:, 0].tolist() == [3.0, 0.0]
     assert table["stops"][:, :2].tolist() == [[-1.0, 1.0], [-2.0, 8.0]]
 

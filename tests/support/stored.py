@@ -10,7 +10,7 @@ SYSTEM = f"system: {{{PAPER_NUMBERS}, b: 6.6}}\norbit: {{transient: 3, record: 4
 SWEEP = "sweep: {b: {values: [6.5, 6.6, 6.7]}}\n"
 PLANE = "sweep: {R: {values: [0.7, 0.8]}, b: {values: [6.5, 6.6, 6.7]}}\n"
 ALL = "observe: [section, lyapunov, impacts]\n"
-SECTION = {"x1", "v1", "x2", "v2", "period"}
+SECTION = {"x1", "v1", "x2", "v2", "period", "approached_period", "approached_distance", "approached_factor"}
 LYAPUNOV = {"lyapunov", "lyapunov_residual", "lyapunov_error"}
 IMPACTS = {"impacts_right", "impacts_left", "min_impact_speed", "contact_error", "sticking_time"}
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from vibro_sweep.cli.ragged_tables import curves_table, special_table, windows_table
 from vibro_sweep.model.branch_file import CHART, WINDOWS
-from vibro_sweep.model.exponents import CERTAIN, sign_of
+from vibro_sweep.model.exponents import CERTAIN, periods_to_go, sign_of
 from vibro_sweep.model.status import NOT_COMPUTED, NOT_SETTLED, STATUSES, VALID, meaning
 from vibro_sweep.store import checks
 from vibro_sweep.store.attributes import is_flat, quantities_of, text, texts
@@ -132,8 +132,23 @@ def _progress(file: h5py.File) -> list[str]:
         f"missing      {total - done:,}",
         f"failed       {sum(failed.values()):,}",
         *(f"  {meaning(code)}: {count:,}{advice[code]}" for code, count in failed.items()),
-        *([f"not settled  {counts[NOT_SETTLED]:,}"] if counts[NOT_SETTLED] else []),
+        *([f"not settled  {counts[NOT_SETTLED]:,}{_to_go(file)}"] if counts[NOT_SETTLED] else []),
     ]
+
+
+def _to_go(file: h5py.File) -> str:
+    """How many periods more orbits need that approach a periodic one, as far as it is known."""
+    if "approached_factor" not in file:
+        return ""
+    known = [
+        periods_to_go(file["approached_distance"][piece], factors)
+        for piece, factors in checks.readable(file["approached_factor"])
+    ]
+    needed = np.concatenate([values[np.isfinite(values)] for values in known]) if known else np.empty(0)
+    needed = needed[needed > 0]
+    if not len(needed):
+        return ""
+    return f"; {len(needed):,} arrive at a periodic orbit after up to about {needed.max():.2g} periods more"
 
 
 def _exponents(file: h5py.File) -> list[str]:

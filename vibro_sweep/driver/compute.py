@@ -22,6 +22,7 @@ from vibro_sweep.model.errors import VibroSweepError
 from vibro_sweep.model.grazing import expansion_point
 from vibro_sweep.model.grid import linears
 from vibro_sweep.model.observables import GAP
+from vibro_sweep.model.own_time import in_own_time, in_users_time, with_velocities
 from vibro_sweep.model.state import state
 
 
@@ -71,12 +72,12 @@ def compute(block: Block) -> tuple[tuple[slice, ...], dict[str, np.ndarray]]:
 
 def _compute(block: Block) -> dict[str, np.ndarray]:
     plan, states = block.plan, 2 * block.system.masses
-    table, kind = table_of(block.system, block.axes, frames=plan.lyapunov or plan.order > 0)
+    table, kind, rate = table_of(block.system, block.axes, frames=plan.lyapunov or plan.order > 0)
     if plan.order:
         table["graze"] = (
             expansion_point(block.parameters, block.expand_at)
             if kind.paper
-            else grazing_points(linears(block.system, block.axes), block.expand_at)
+            else grazing_points(in_own_time(linears(block.system, block.axes), rate), block.expand_at)
         )
     starts = starts_of(block)
     n_starts = starts.shape[1]
@@ -95,6 +96,7 @@ def _compute(block: Block) -> dict[str, np.ndarray]:
     }
     anew = starts_at(starts.reshape(-1, states)[: steps.shape[1]])  # also after a point that failed
     first = anew if block.begun is None else block.begun
+    first, anew = (with_velocities(one, kind.masses, 1 / rate) for one in (first, anew))
     workspace = _workspace(block, kind, int(table["cells"].max()), min(steps.shape[1], LANES))
     mapping = Mapping(plan.order) if plan.order else None
     begins = np.stack([first, anew])
@@ -103,7 +105,7 @@ def _compute(block: Block) -> dict[str, np.ndarray]:
         _without_samples(workspace), plan, mapping,
     )  # fmt: skip
     energies = energies_of(block, steps, kind, arrays["results"], begins) if "impact_power" in block.wanted else {}
-    ends = {} if block.last else {CHAIN_ENDS: _ends(arrays["results"][-1], anew)}
+    ends = {} if block.last else {CHAIN_ENDS: with_velocities(_ends(arrays["results"][-1], anew), kind.masses, rate)}
     if plan.lyapunov:
         _drop_without_exponents(arrays)
     turn = -1 if block.reverse else 1
@@ -117,7 +119,8 @@ def _compute(block: Block) -> dict[str, np.ndarray]:
     if block.samples:
         named |= trajectories_of(block, table, arrays["results"], workspace, lead)
         named["status"] = arrays["results"]["status"].reshape(lead)
-    return {name: values for name, values in named.items() if name in block.wanted} | ends
+    named = {name: values for name, values in named.items() if name in block.wanted}
+    return in_users_time(named, kind.masses, rate) | ends
 
 
 def _ends(last: np.ndarray, anew: np.ndarray) -> np.ndarray:

@@ -50,7 +50,7 @@ def _workspace_bytes(scene: Scene, orbits: int) -> int:
     axes = {}
     for key, values in scene.sweep.items():
         axes[key] = values[np.unique(np.linspace(0, len(values) - 1, LOOKS).astype(int))]
-    table, kind = table_of(scene.system, axes, frames=False)
+    table, kind, _ = table_of(scene.system, axes, frames=False)
     cells = int(table["cells"].max())
     tables = LANES * cells * (node_of(kind.masses).itemsize + 2 * (2 * kind.masses + 1) * 8) + LANES * CHUNK
     samples = sample_numbers(scene.system.masses) * scene.trajectory.samples if scene.trajectory else 0

@@ -21,14 +21,15 @@ def keep_averages(section, T, repeat, right, left, o, result):
     """
     mean, error, period = result.average, result.average_error, result.period
     length = period if period > 0 else len(section)
-    largest, memory = 0.0, 1.0
+    largest, memory, omega = 0.0, 1.0, 2.0 * math.pi / T
     states = section.shape[1]
     for i in range(states):
+        unit = omega if i % 2 == 1 else 1.0  # of velocities, in that of places
         mean[i], square = 0.0, 0.0
         for n in range(len(section) - length, len(section)):
             mean[i] += section[n, i] / length
             square += section[n, i] ** 2 / length
-            largest = max(largest, abs(section[n, i]))
+            largest = max(largest, abs(section[n, i]) / unit)
         error[i] = standard_error(section, i, mean[i])
         spread = square - mean[i] ** 2
         if spread > error[i] ** 2:
@@ -41,7 +42,8 @@ def keep_averages(section, T, repeat, right, left, o, result):
     if period > 0:
         error[states] = error[states + 1] = o.chatters / length  # rounding may end a listed sequence one impact earlier
         for i in range(states):  # steps that shrink by the greatest multiplier, summed up
-            error[i] = repeat * largest / max(-math.expm1(mean[states + 2] * period * T), repeat)
+            size = largest * omega if i % 2 == 1 else largest
+            error[i] = repeat * size / max(-math.expm1(mean[states + 2] * period * T), repeat)
 
 
 @jit

@@ -128,7 +128,7 @@ def with_log(law, log):
 def begin_contacts(law):
     """The log of contacts is empty."""
     if law is not None:
-        clear_contacts(law.orbits[0])
+        clear_contacts(law.orbits[0], True)
         law.orbits[0].logged, law.orbits[0].row = 0, -1
 
 

@@ -6,11 +6,11 @@ out to be periodic and exponents are wanted, three times one more period, the la
 
 import numpy as np
 
+from vibro_sweep.engine.arrival import REPEAT, ROUNDING, is_under_way, look, set_scale
 from vibro_sweep.engine.averages import keep_averages
 from vibro_sweep.engine.compliant.law import clear_contacts
 from vibro_sweep.engine.compliant.relaxing import bring_stops
 from vibro_sweep.engine.motion.orbits import reset_counts
-from vibro_sweep.engine.periods import REPEAT, ROUNDING, find_period, has_settled
 from vibro_sweep.engine.point_tables import to_masses
 from vibro_sweep.engine.simd.jit import inline, jit, noinline
 from vibro_sweep.engine.simd.lanes import LANES
@@ -29,7 +29,7 @@ from vibro_sweep.engine.variational.spectrum import (
 )
 from vibro_sweep.model import status
 
-LEAST_RECORD = 50  # periods from which on a record can tell whether its orbit has settled
+LEAST_RECORD = 40  # periods from which on a record can tell whether its orbit has arrived
 TRANSIENT, WARM_UP, RECORD, FLOQUET, PHASES = 0, 1, 2, 3, 6
 
 
@@ -81,12 +81,11 @@ def end_phase(e, w, plan, phase, points, results, sections, phases, running):
 
 
 @inline
-def begin_contacts(law, t, i, wanted):
+def begin_contacts(law, t, i, watched):
     """Count the contacts of an orbit with compliant stops, and what they do to volumes, from here on."""
     if law is not None:
         start_in_two(t, i)
-        if wanted:
-            clear_contacts(law.orbits[i])
+        clear_contacts(law.orbits[i], watched)
 
 
 @inline
@@ -147,7 +146,8 @@ def keep_record(e, w, plan, point, result, section, phase, running, o):
                 section[n, j] = states[n, j]
     result.resting = o.resting
     if plan.states:
-        result.period = find_period(states, o, w.state, rounding_of(o, plan))
+        set_scale(w.state[: states.shape[1]], o.largest, T)
+        look(states, o, w.state, rounding_of(o, plan), result)
     for n in range(len(running)):
         for j in range(numbers):
             running[n, j] = growth[n, j] / (periods_read(n, len(running), plan.record) * T)
@@ -194,15 +194,13 @@ def close(e, w, plan, points, results):
             result.status = o.status
         if plan.states and o.status == status.OK:
             states = w.section[i]
-            settled = has_settled(
-                result.period, states, o, w.state, rounding_of(o, plan), result.lyapunov, result.lyapunov_error
-            )
-            result.period = max(result.period, 0)
-            if settled and plan.attractors:
+            set_scale(w.state[: states.shape[1]], o.largest, period_of(e, o))
+            under_way = is_under_way(states, o, w.state, rounding_of(o, plan), result)
+            if under_way and plan.record >= LEAST_RECORD:
+                result.status = status.NOT_SETTLED
+            if plan.attractors and not under_way:
                 right, left = touches_of(e.law, o, result)
                 keep_averages(states, period_of(e, o), REPEAT, right, left, o, result)
-            elif not settled and plan.record >= LEAST_RECORD:
-                result.status = status.NOT_SETTLED
 
 
 @jit

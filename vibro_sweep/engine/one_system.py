@@ -23,6 +23,7 @@ from vibro_sweep.model.linear import stacked
 from vibro_sweep.model.metric import ROUNDING
 from vibro_sweep.model.modes import modes
 from vibro_sweep.model.oscillator import System
+from vibro_sweep.model.own_time import in_own_time, with_velocities
 from vibro_sweep.model.parameters import NAMES, ParameterError
 from vibro_sweep.model.stops import has_compliant
 
@@ -111,12 +112,12 @@ def is_paper(system, axes: dict[str, np.ndarray] | None = None) -> bool:
     return not np.any(offset) or not is_far(np.max(np.abs(offset)), np.min(np.abs(b)))
 
 
-def point_of_one(system, later: float) -> tuple[np.ndarray, Kind]:
-    """The POINT (1,) of a system whose phase is moved on by `later`, and its kind."""
+def point_of_one(system, later: float, rate: float) -> tuple[np.ndarray, Kind]:
+    """The POINT (1,) of a system whose phase is moved on by `later`, in the unit of time 1/rate, and its kind."""
     if is_paper(system):
         parameters = system.parameters()
         return points_of(parameters | {"tau": parameters["tau"] + later}, system.stops).reshape(1), PAPER
-    q = system.linear
+    q = in_own_time(system.linear, rate)
     one = stacked([q._replace(tau=q.tau + later)])
     kind = kind_of(one)
     return any_points(one, kind), kind
@@ -131,13 +132,14 @@ class Engine:
     system : a System, or an oscillator with `linear`, `omega` and `period`. States are those of the masses; the orbits
         themselves move in contact coordinates (`to_contact`, `to_masses`).
     later : radians by which the phase of the force at t = 0 is moved on
+    rate : orbits move in the unit of time 1/rate; times and states of the masses are in that of the system
 
     Raises `ParameterError` where the rates of the system lie too far apart.
     """
 
-    def __init__(self, system, later: float = 0.0):
-        self._made_of, self.system = (system, later), system
-        self.point, self.kind = point_of_one(system, later)
+    def __init__(self, system, later: float = 0.0, rate: float = 1.0):
+        self._made_of, self.system, self.rate = (system, later, rate), system, rate
+        self.point, self.kind = point_of_one(system, later, rate)
         self.states = 2 * self.kind.masses
         self.is_system = isinstance(system, System)
         self.cells = int(self.point["cells"][0])
@@ -145,7 +147,7 @@ class Engine:
             allowed = f"such that the fastest rate times the period is at most {cells.LONGEST:g}"
             raise ParameterError("omega", system.omega, allowed)
         self.period = system.period
-        self.width = self.period / self.cells
+        self.width = self.period * rate / self.cells
         self._workspace = points.new_workspace(plan_of(), self.cells, 0, kind=self.kind)
         self._run(points.TABLES, LANES)
         self.stops = orbits.Stops(*self.point["stops"][0].tolist())
@@ -204,7 +206,7 @@ class Engine:
 
     def to_contact(self, states) -> np.ndarray:
         """States (..., 2 N) of the masses in contact coordinates; on a stop, and at rest there, but for rounding."""
-        states = np.array(states, float)
+        states = with_velocities(states, self.kind.masses, 1 / self.rate)
         if self.turned:
             P = self.point["P"][0]
             sizes = np.abs(states[..., 0::2]) @ np.abs(P[0]), np.abs(states[..., 1::2]) @ np.abs(P[0])
@@ -220,7 +222,7 @@ class Engine:
         if self.turned:
             states = self._turn(states, self.point["back"][0])
             states[..., 0::2] += self.point["origin"][0]
-        return states
+        return with_velocities(states, self.kind.masses, self.rate)
 
     @staticmethod
     def _turn(states: np.ndarray, matrix: np.ndarray) -> np.ndarray:
@@ -272,12 +274,12 @@ class Engine:
         times = np.asarray(times, float)
         period = np.floor(times / self.period)
         # a quotient that was rounded up to a whole number leaves a remainder below zero
-        cell, offset = np.divmod(np.maximum(times - period * self.period, 0.0), self.width)
+        cell, offset = np.divmod(np.maximum(times - period * self.period, 0.0) * self.rate, self.width)
         late = cell >= self.cells
         return (period + late).astype(np.int64), np.where(late, 0, cell).astype(np.int64), np.where(late, 0.0, offset)
 
     def time(self, period, cell, offset):
-        return period * self.period + (cell * self.width + offset)
+        return period * self.period + (cell * self.width + offset) / self.rate
 
     def impacts(self, rows: np.ndarray, start: float = -np.inf) -> np.ndarray:
         """Recorded impacts (m, 3 + 2 N) as a structured array with absolute times, none before `start`.
@@ -295,7 +297,7 @@ class Engine:
         """The same from rows (m, 5) of period, cell, offset, side and speed of the gap, and states of the masses."""
         result = np.empty(len(rows), IMPACT if self.is_system else impact_of(self.kind.masses))
         result["t"] = np.maximum(self.time(rows[:, 0], rows[:, 1], rows[:, 2]), start)  # cell and offset round it
-        result["side"], result["v1"] = rows[:, 3], rows[:, 4]
+        result["side"], result["v1"] = rows[:, 3], rows[:, 4] * self.rate
         if self.is_system:
             result["x2"], result["v2"] = states[:, 2], states[:, 3]
         else:
@@ -339,6 +341,9 @@ class Engine:
         result["t_release"] = self.time(rows[:, 3], rows[:, 4], rows[:, 5])
         for name, column in zip(CONTACT.names[2:], rows.T[6:], strict=True):
             result[name] = column
+        result["v_touch"] *= self.rate
+        result["v_release"] *= self.rate
+        result["max_force"] *= self.rate**2
         return result
 
     def sticking(self, rows: np.ndarray, end: float) -> np.ndarray:

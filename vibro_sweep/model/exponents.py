@@ -1,5 +1,8 @@
-"""How Lyapunov exponents are read off a record: what kernels, attractors, windows, files and pictures must agree on."""
+"""What is read off a record, exponents and arrival: what kernels, attractors, windows, files and pictures agree on."""
 
+import numpy as np
+
+ARRIVED = 3e-6  # distance from a periodic orbit, in parts of the sizes of coordinates, at which an orbit is there
 CERTAIN = 2.0  # standard errors by which an exponent must differ from zero to be above or below it
 RUNNING = 200  # points at which exponents that converge are stored
 
@@ -12,3 +15,9 @@ def sign_of(exponent, error, certain=CERTAIN):
 def periods_read(m, parts, periods):
     """Forcing periods of a record after which the growth of tangent vectors is read for the m-th of `parts` times."""
     return -(-(m + 1) * periods // parts)
+
+
+def periods_to_go(distance, factor):
+    """Forcing periods after which a distance that shrinks by a factor in each of them is `ARRIVED`; NaN if unknown."""
+    with np.errstate(all="ignore"):
+        return np.ceil(np.maximum(np.log(ARRIVED / np.asarray(distance)) / np.log(factor), 0.0))

@@ -47,7 +47,7 @@ def _attractor(name: str, label: str, text: str, dtype: str = "f8") -> Variable:
 
 
 _EXPONENTS, _MULTIPLIERS, _IMPACTS, _ENERGY = ("lyapunov",), ("multipliers",), ("impacts",), ("energy",)
-_CONTACTS = ("contacts",)
+_CONTACTS, _PERIODS = ("contacts",), ("section", "multipliers", "attractors")
 GAP = "gap"
 
 
@@ -74,8 +74,21 @@ def variables(masses: int, gap: bool = False) -> tuple[Variable, ...]:
 _OF_ANY = (
     _section("phase", "forcing phase", "forcing phase omega t mod 2 pi at the impact", units="rad", at_impacts=True),
     Variable(
-        "period", ("section", "multipliers", "attractors"), "period in T",
+        "period", _PERIODS, "period in T",
         "period of the orbit in forcing periods; 0 if none up to half of `record` is found", dtype="i8",
+    ),
+    Variable(
+        "approached_period", _PERIODS, "approached period in T",
+        "period of the orbit that this one approaches, in forcing periods; 0 where it has arrived, or none is known",
+        dtype="i8",
+    ),
+    Variable(
+        "approached_distance", _PERIODS, "distance from the orbit approached",
+        "largest distance from the orbit that this one approaches, in parts of the sizes of its coordinates; NaN where "
+        "none is known",
+    ),
+    Variable(
+        "approached_factor", _PERIODS, "factor of the approach", "by which this distance shrinks in a forcing period",
     ),
     Variable(
         "lyapunov", _EXPONENTS, "Lyapunov exponent", "Lyapunov exponents per unit time, natural logarithm",

@@ -61,9 +61,10 @@ STATUSES = {
     ),
     NOT_SETTLED: Status(
         "not_settled",
-        "a remark, the numbers are valid: the record is neither periodic nor stationary",
-        "Lengthen `transient`, and `record` where a long period is expected. Chaos that ends after the record cannot "
-        "be distinguished from chaos that lasts.",
+        "a remark, the numbers are valid: the orbit is still on its way to a periodic one",
+        "Lengthen `transient`, by what `approached_distance` and `approached_factor` say, or `info`, where they are "
+        "known; and `record` where a long period is expected. Chaos that ends after the record cannot be distinguished "
+        "from chaos that lasts.",
     ),
 }
 

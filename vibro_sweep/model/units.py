@@ -3,6 +3,7 @@
 A unit is a text as CF has it, "m s-1". Without a system's `units` its numbers are nondimensional.
 """
 
+import functools
 import math
 import re
 from collections import Counter
@@ -64,6 +65,12 @@ def unit_in(declared: str, units: Units | None) -> str:
     if factor == 0:
         return NONE
     return declared if factor == 1 else f"{factor!r} {declared}"
+
+
+@functools.cache
+def power_of_seconds(unit: str) -> int:
+    """The power of a time in a unit: -1 of "m s-1"."""
+    return _powers(unit)["s"]
 
 
 def _powers(unit: str) -> Counter:

@@ -12,6 +12,7 @@ from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.analysis.single.orbit import simulate
 from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.linear import Family
+from vibro_sweep.model.own_time import as_lengths
 from vibro_sweep.model.refusals import not_allowed
 
 ROUNDS = 4  # periods that are simulated, so that a whole one begins between any two of its events
@@ -25,7 +26,8 @@ def from_state(system, family, state, periods) -> PeriodicOrbit:
     simulated = simulate(system, state, periods)
     if str(simulated.status) != "ok":
         return PeriodicOrbit(system, "not_converged")
-    settled = np.abs(simulated.section[-1] - state).max() < SETTLED * np.abs(state).max()
+    begin, end = as_lengths(np.stack([state, simulated.section[-1]]), family.linear.omega)
+    settled = np.abs(end - begin).max() < SETTLED * np.abs(begin).max()
     if family.linear.compliant:
         return _from_contacts(system, family, simulate(system, state, ROUNDS * periods), periods, settled)
     if len(simulated.sticking):

@@ -15,13 +15,14 @@ from vibro_sweep.engine import points
 from vibro_sweep.engine.compliant.law import LOGGED
 from vibro_sweep.engine.halting import interruptible
 from vibro_sweep.engine.motion import orbits
-from vibro_sweep.engine.one_system import Engine, plan_of
+from vibro_sweep.engine.one_system import Engine, is_paper, plan_of
 from vibro_sweep.engine.records import new_results, starts_at
 from vibro_sweep.model import status
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.arguments import LATEST, checked_count, checked_state, checked_times
 from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.oscillator import checked_system
+from vibro_sweep.model.own_time import rate_of, with_velocities
 from vibro_sweep.model.real import number_of
 from vibro_sweep.model.refusals import not_allowed
 
@@ -205,7 +206,7 @@ def simulate(system: AnyOscillator, state: ArrayLike, periods: int, start_time: 
         allowed = f"a number of at most {LATEST} forcing periods: beyond, times resolve no motion"
         raise ArgumentError(not_allowed("start_time", start_time, allowed))
     start_time = begins
-    engine = Engine(system)
+    engine = Engine(system, rate=_rate_of(system))
     begin = engine.checked(state)
     first, cell, offset = (value[()] for value in engine.locate(start_time))
     engine.put(begin, cell, offset)
@@ -234,6 +235,11 @@ def simulate(system: AnyOscillator, state: ArrayLike, periods: int, start_time: 
         section,
         engine,
     )
+
+
+def _rate_of(system: AnyOscillator) -> float:
+    """Of the unit of time in which its orbits are computed."""
+    return 1.0 if is_paper(system) else rate_of(system.omega)
 
 
 _Carried = tuple[list[np.ndarray], list[np.ndarray], list[np.ndarray], int, int]
@@ -286,11 +292,11 @@ def lyapunov(system: AnyOscillator, state: ArrayLike, transient: int = 1000, rec
     checked_system(system)
     state, transient = checked_state(state, system.masses), checked_count("transient", transient, 0)
     record = checked_count("record", record, 1, MAX_RECORD)
-    engine = Engine(system)
+    engine = Engine(system, rate=_rate_of(system))
     engine.checked(state)
     plan = plan_of(transient, record, lyapunov=True)
     results, nothing = new_results((1, 1), engine.kind.masses), np.empty((1, 1, 0))
-    starts = starts_at(np.tile(state, (2, 1, 1)))
+    starts = starts_at(np.tile(with_velocities(state, system.masses, 1 / engine.rate), (2, 1, 1)))
     workspace = points.new_workspace(plan, engine.cells, 0, orbits=1, kind=engine.kind)
     steps = engine.point.reshape(1, 1)
     kept = nothing[..., None], nothing, nothing[..., None]
@@ -298,5 +304,5 @@ def lyapunov(system: AnyOscillator, state: ArrayLike, transient: int = 1000, rec
         points.run_points, steps, starts, results, *kept, workspace, plan, None,
         halt=workspace.ensemble.halt, cells=engine.steps * (transient + record),
     )  # fmt: skip
-    point = results[0, 0]
-    return Exponents(point["lyapunov"], point["lyapunov_error"], point["lyapunov_residual"])
+    found = (results[0, 0][name] * engine.rate for name in ("lyapunov", "lyapunov_error", "lyapunov_residual"))
+    return Exponents(*found)

@@ -7,12 +7,16 @@ from vibro_sweep.engine.one_system import is_paper, points_of
 from vibro_sweep.engine.records import PAPER, Kind
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.grid import grid, linears
+from vibro_sweep.model.own_time import in_own_time, rate_of
 
 
-def table_of(system: AnyOscillator, axes: dict[str, np.ndarray], frames: bool) -> tuple[np.ndarray, Kind]:
-    """Points of a grid of values, of its shape, and the kernels that they need. frames: for tangent vectors."""
+def table_of(system: AnyOscillator, axes: dict[str, np.ndarray], frames: bool) -> tuple[np.ndarray, Kind, float]:
+    """Points of a grid of values, of its shape, the kernels that they need, and the rate of their unit of time.
+
+    frames : for tangent vectors
+    """
     if is_paper(system, axes):
-        return points_of(grid(system, axes), system.stops, frames), PAPER
+        return points_of(grid(system, axes), system.stops, frames), PAPER, 1.0
     each = linears(system, axes)
-    kind = kind_of(each)
-    return any_points(each, kind, frames), kind
+    kind, rate = kind_of(each), rate_of(system.omega)  # of the system, so that it is the same in all blocks
+    return any_points(in_own_time(each, rate), kind, frames), kind, rate

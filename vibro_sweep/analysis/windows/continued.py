@@ -14,6 +14,7 @@ from vibro_sweep.engine.records import new_results, starts_at
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.model.exponents import sign_of
 from vibro_sweep.model.linear import family_of
+from vibro_sweep.model.own_time import with_velocities
 from vibro_sweep.model.status import NOT_SETTLED, is_valid
 
 WARM_UP = 200  # forcing periods, for tangent vectors
@@ -49,7 +50,8 @@ def _far_enough(row: Row, i: np.ndarray, j: np.ndarray) -> Continued:
 
 
 def _computed(row: Row, i: np.ndarray, begin: np.ndarray, transient: int) -> Continued:
-    table, kind = table_of(row.system, {row.parameter: row.values[i]}, frames=True)
+    table, kind, rate = table_of(row.system, {row.parameter: row.values[i]}, frames=True)
+    begin = with_velocities(begin, kind.masses, 1 / rate)
     n, states = len(i), 2 * kind.masses
     plan = plan_of(transient + WARM_UP, MORE, lyapunov=True)._replace(impacts=True)
     results, nothing = new_results((1, n), kind.masses), np.empty((1, n, 0))
@@ -63,11 +65,12 @@ def _computed(row: Row, i: np.ndarray, begin: np.ndarray, transient: int) -> Con
     found = results[0]
     period = np.where(is_valid(found["status"]) & (found["period"] <= LONGEST), found["period"], 0)
     reasons = _reasons(found)
-    free = found["impacts_left"] + found["impacts_right"] == 0
+    touches = ("impacts_left", "impacts_right", "contacts_left", "contacts_right", "contact_time")
+    free = ~np.any([found[name] > 0 for name in touches], axis=0)
     for m in np.flatnonzero(free & (reasons == REASON_CODES["quasi_periodic"])):
         if has_free_gap(family_of(row.system_at(row.values[i[m]])).linear):  # a mass that flies towards a stop
             reasons[m] = REASON_CODES["not_settled"]
-    return Continued(period, found["end"].copy(), reasons)
+    return Continued(period, with_velocities(found["end"], kind.masses, rate), reasons)
 
 
 def _reasons(found: np.ndarray) -> np.ndarray:

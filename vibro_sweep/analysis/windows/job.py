@@ -12,6 +12,7 @@ from vibro_sweep.analysis.periodic.one_thread import one_thread
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.analysis.windows.rows import REASON_CODES
 from vibro_sweep.analysis.windows.stretch import representative, stable_stretch
+from vibro_sweep.model.own_time import as_lengths
 
 SLACK = 1e-9  # of the range: an orbit that is so far from a window's end may be counted as beyond it
 NEAR = 1e-3  # of the size of the state: a recorded orbit that is farther from the periodic one has not settled
@@ -71,10 +72,11 @@ def holds(branch: Branch, value: float, slack: float) -> bool:
 
 def lies_on(orbit: PeriodicOrbit, state: np.ndarray) -> bool:
     """Whether a section state is one of an orbit, or of its mirror image where the oscillator has one."""
-    return bool(are_near(section_states(orbit), state[None])[0])
+    return bool(are_near(section_states(orbit), state[None], orbit._solution.family.linear.omega)[0])
 
 
-def are_near(sections: np.ndarray, states: np.ndarray) -> np.ndarray:
+def are_near(sections: np.ndarray, states: np.ndarray, omega: float) -> np.ndarray:
     """(m,) whether states (m, 2N) are among the section states (s, 2N) of an orbit."""
+    sections, states = (as_lengths(values, omega) for values in (sections, states))
     distance = np.abs(sections - states[:, None]).max(axis=2).min(axis=1)
     return distance <= NEAR * np.maximum(np.abs(states).max(axis=1), 1e-300)

@@ -19,7 +19,8 @@ def members(arrays: Arrays, system, parameter: str, values: np.ndarray, states: 
     guesses = [solution_of(arrays, family.replace(**{parameter: p}), *guess_at(arrays, p)) for p in values.tolist()]
     for i, found in enumerate(corrected(guesses)):
         if found is not None:
-            result[i] = are_near(section_states(PeriodicOrbit(found.family, "ok", found, (0, 0))), states[i])
+            sections = section_states(PeriodicOrbit(found.family, "ok", found, (0, 0)))
+            result[i] = are_near(sections, states[i], found.family.linear.omega)
     return result
 
 

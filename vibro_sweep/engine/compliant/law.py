@@ -235,9 +235,9 @@ def lane_of(side):
 
 
 @jit
-def clear_contacts(contact):
-    """Count contacts from here on, and watch their peaks."""
-    contact.watched = True
+def clear_contacts(contact, watched):
+    """Count contacts from here on; watched: and watch their peaks."""
+    contact.watched = watched
     contact.contacts[0] = contact.contacts[1] = contact.ended = 0
     contact.time = contact.work = contact.restitutions = 0.0
     contact.peak = contact.peak_force = contact.largest = contact.strongest = -np.inf

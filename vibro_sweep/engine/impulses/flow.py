@@ -182,7 +182,8 @@ def closing(q: Linear, sigma: int, half_periods: int) -> np.ndarray:
         bordered = np.block([[matrix, momentum], [gauge, np.zeros((count, count))]])
         result[:] = np.linalg.inv(bordered)[:n, : n + 1]
         return result
-    if np.linalg.cond(matrix) > 1e14:
+    unit = np.repeat([1.0, q.omega], N)  # velocities over omega, so that the condition does not depend on units
+    if np.linalg.cond(matrix * unit / unit[:, None]) > 1e14:
         raise ResonanceError(
             f"an undamped mode repeats itself, with sign {sigma:+d}, after {half_periods} half periods"
         )
