@@ -4,7 +4,7 @@ import pytest
 from mpmath import mp, mpf
 from support import slow_cases
 from support.births import births, study
-from support.branches import exact as in_digits
+from support.in_digits import errors_of
 from support.searching import searched
 
 
@@ -24,7 +24,7 @@ def test_births_in_many_digits():
         points = {id(point): point for one in found for point in one.points}.values()
         ((name, _),) = found[0].points[0].parameters.items()
         with mp.workdps(30):
-            exact = in_digits(found[0].points[0], name)
+            exact = mpf(found[0].points[0].parameters[name]) + mpf(float(errors_of(found[0].points[0])[0]))
             assert all(abs(mpf(point.parameters[name]) - exact) < point.error for point in points), found[0].where
         counted += len(points)
     assert counted == 9
