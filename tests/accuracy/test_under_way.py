@@ -110,3 +110,49 @@ def test_units_change_nothing(seed):
         for one, other in zip(now[1], numbers, strict=True):
             assert np.allclose(one, other, rtol=1e-7, atol=1e-9, equal_nan=True)
         assert (state is None) == (now[3] is None) and (state is None or np.allclose(now[3], state, rtol=1e-9))
+
+
+ALL = ["section", "lyapunov", "multipliers", "impacts", "contacts", "attractors", "energy", "convergence"]
+POWERS = {"kg": (0, 0, 1), "m": (0, 1, 0), "s": (1, 0, 0), "N": (-2, 1, 1), "W": (-3, 2, 1)}  # of time, length, mass
+
+
+def factor(units: str, own: tuple[float, float, float]) -> float:
+    """By which a number with such units is larger where a time, a length and a mass of 1 are these."""
+    result = 1.0
+    for word in units.split():
+        name = word.rstrip("-123")
+        if name in POWERS:
+            result *= np.prod(np.power(own, POWERS[name])) ** int(word[len(name) :] or 1)
+    return result
+
+
+@pytest.mark.parametrize("gap", [False, True], ids=["x1", "gap"])
+@pytest.mark.parametrize("stop", [{"R": 0.8}, {"k_stop": 30.0, "c_stop": 0.2}], ids=["rigid", "compliant"])
+def test_every_number_of_a_file_has_its_unit(stop, gap):
+    """Compared with the same oscillator in other units, by the units that the file declares."""
+    own, data = (2.0**-22, 2.0**-5, 2.0**3), []
+    for time, length, mass in ((1.0, 1.0, 1.0), own):
+        stops = {"R": 0.8} if "R" in stop else {"k_stop": 30 * mass / time**2, "c_stop": 0.2 * mass / time}
+        system = vs.Oscillator(
+            M=np.diag([1.0, 2.0]) * mass, K=np.array([[2.0, -1], [-1, 1.5]]) * mass / time**2, stops="both", tau=0.4,
+            C=np.array([[0.1, -0.02], [-0.02, 0.1]]) * mass / time, force=np.array([1, 0.3]) * mass * length / time**2,
+            omega=1.4 / time, contact_normal=[1, -1] if gap else [1, 0], b=0.4 * length, units="SI", **stops,
+        )  # fmt: skip
+        observe = ALL if "R" not in stop else [word for word in ALL if word != "contacts"]
+        b = np.linspace(0.2, 0.5, 7) * length
+        orbits = {"transient": 100, "record": 50, "trajectory": {"periods": 2, "samples": 9}}
+        start = {"x1": 0.1 * length, "v1": 0.2 * length / time}
+        data.append(vs.sweep(system, {"b": b}, observe=observe, start=start, **orbits))
+    compared = 0
+    for name, values in data[0].data_vars.items():
+        if name == "average" or name.endswith(("_error", "_residual")) or values.dtype.kind not in "fi":
+            continue  # of errors rounding is left
+        there = data[1][name]
+        scaled = there.values / factor(there.attrs.get("units", "1"), own)
+        size = np.nanmax(np.abs(values.values), initial=0.0)
+        assert np.allclose(scaled, values.values, rtol=1e-7, atol=1e-9 * size, equal_nan=True), name
+        compared += 1
+    assert compared > 35
+    length, speed = own[1], own[1] / own[0]
+    scales = np.array([length, speed, length, speed, 1, 1, 1 / own[0]])
+    assert np.allclose(data[1].average / scales, data[0].average, rtol=1e-7, atol=1e-9, equal_nan=True)

@@ -44,7 +44,8 @@ def as_lengths(states: np.ndarray, omega: float) -> np.ndarray:
 
 def in_users_time(named: dict[str, np.ndarray], masses: int, rate: float) -> dict[str, np.ndarray]:
     """Arrays of a file, by the names of its variables, in the user's unit of time again."""
-    powers = {one.name: -power_of_seconds(one.units) for one in variables(masses, True)}
+    known = (*variables(masses, True), *variables(masses, False))  # whether or not the gap is x1
+    powers = {one.name: -power_of_seconds(one.units) for one in known}
     scaled = {name: values * rate ** powers[name] if powers.get(name) else values for name, values in named.items()}
     if "end" in named:
         scaled["end"] = with_velocities(named["end"], masses, rate)
