@@ -219,7 +219,7 @@ def look_at_repeating(section, scale, p, rounding, found):
     if too_few or last_difference(section, scale, long) <= STILL:
         found.period = least
         return
-    r = recurrence(section, scale, long, 0)
+    r = recurrence(section, scale, long, second_half(section, long))
     if goes_there(r):
         found.approached_period = least
         keep_approach(section, scale, long, r, found)
