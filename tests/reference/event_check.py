@@ -69,8 +69,8 @@ def errors(
         exact = _recorded(machine, first, found.end, start_time)
         if first.given_up:
             times = [row[KINDS[kind].index(ENDS[kind])][0] for kind, rows in exact.rows.items() for row in rows]
-            found = found._replace(end=float(max(times, default=0)) * (1 + 2 * AT_END))
-            exact = exact._replace(end=found.end)
+            found = recorded_until(found, float(max(times, default=0)) * (1 + 2 * AT_END))
+            exact = _recorded(machine, first, found.end, start_time)
         moves = (moved(machine, state, rng) for _ in range(MOVES))
         others = [_recorded(each, orbit(each, start), found.end, start_time) for each, start in moves]
         findings = compared(machine, found, exact, others, max, chaos, most)
@@ -129,6 +129,12 @@ def _recorded(machine, orbit, end, start_time) -> Recorded:
     sides = {"impact": [hit.side for hit in orbit.impacts], "rest": [rest.side for rest in orbit.rests]}
     sides |= {"contact": [one.side for one in orbit.contacts], "section": [0] * len(rows["section"])}
     return Recorded(sides, rows, end)
+
+
+def recorded_until(found: Recorded, end: float) -> Recorded:
+    """The same as recorded until an earlier end: rests that last longer are known until then."""
+    rests = [((on,), (min(off, end),)) for (on,), (off,) in found.rows["rest"]]
+    return found._replace(end=end, rows=found.rows | {"rest": rests})
 
 
 def _until_rests(orbit: Recorded, kind):

@@ -17,13 +17,14 @@ SHORT = {"transient": 3, "record": 60}
 SOFT = {"R": None, "k_stop": 100.0}
 LONGEST_LABEL = 30  # characters, beside an axis
 
-STATES, SPECTRUM = "x1 v1 x2 v2 period", "lyapunov lyapunov_error lyapunov_residual"
+PERIOD = "period approached_period approached_distance approached_factor"
+STATES, SPECTRUM = "x1 v1 x2 v2 " + PERIOD, "lyapunov lyapunov_error lyapunov_residual"
 VARIABLES = {  # of a file, by what is observed
     "section": STATES,
     "lyapunov": SPECTRUM,
-    "multipliers": "multiplier_re multiplier_im multiplier_error period",
+    "multipliers": "multiplier_re multiplier_im multiplier_error " + PERIOD,
     "impacts": "impacts_right impacts_left min_impact_speed contact_error sticking_time",
-    "attractors": "attractor attractor_id share average average_error period",
+    "attractors": "attractor attractor_id share average average_error " + PERIOD,
     "convergence": "lyapunov_running",
     "contacts": "contacts_right contacts_left contact_time contact_force_max penetration_max restitution_mean",
     "energy": "impact_power rms_x1 rms_v1 rms_x2 rms_v2 peak_x1 peak_v1 peak_x2 peak_v2",

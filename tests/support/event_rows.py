@@ -41,11 +41,9 @@ def recorded(orbit, end=None) -> Recorded:
         "contact": contacts["side"],
         "section": [0] * len(rows["section"]),
     }
-    return Recorded(
-        {kind: list(map(int, values)) for kind, values in sides.items()},
-        rows,
-        orbit.section_times[-1] if end is None else end,
-    )
+    end = orbit.section_times[-1] if end is None else end
+    whole = Recorded({kind: list(map(int, values)) for kind, values in sides.items()}, rows, end)
+    return event_check.recorded_until(whole, end)
 
 
 def findings_of(system, state, periods, start_time=0.0, most=None, **more) -> tuple[vs.types.Orbit, Findings]:

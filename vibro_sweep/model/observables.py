@@ -83,7 +83,7 @@ _OF_ANY = (
         dtype="i8",
     ),
     Variable(
-        "approached_distance", _PERIODS, "distance from the orbit approached",
+        "approached_distance", _PERIODS, "distance to go",
         "largest distance from the orbit that this one approaches, in parts of the sizes of its coordinates; NaN where "
         "none is known",
     ),
