@@ -100,8 +100,8 @@ def concluded(system: vs.Oscillator, time: float, length: float):
 
 @pytest.mark.parametrize("seed", [*range(3), *slow_cases(*range(3, 100))])
 def test_units_change_nothing(seed):
-    """Section points are compared where the numbers themselves are not rounded in another way, orbits in units down to a microsecond: in a picosecond rounding
-    decides which one of several is found first."""
+    """Section points are compared where numbers are not rounded in another way; orbits in units down to a microsecond:
+    in a picosecond rounding decides which one of several is found first."""
     was, numbers, orbit = concluded(drawn(np.random.default_rng(seed)), 1.0, 1.0)
     for time, length, mass in UNITS:
         now = concluded(drawn(np.random.default_rng(seed), time, length, mass), time, length)
