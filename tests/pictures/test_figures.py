@@ -10,13 +10,14 @@ import pytest
 from matplotlib.figure import Figure
 from support import cases, figures, sample
 from support.scene_texts import parsed
+from xarray import Dataset
 
 import vibro_sweep as vs
 
 ROWS = cases.rows("figures")
 SYSTEM = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=6.6)
 BALL = vs.Oscillator.named("one_mass", zeta=0.02, F=0.6, omega=0.9, k_stop=20, c_stop=8, b=1, tau=0, stops="right")
-NAMES = {**vars(figures), "vs": vs, "np": np, "SYSTEM": SYSTEM, "BALL": BALL, "Figure": Figure}
+NAMES = {**vars(figures), "vs": vs, "np": np, "SYSTEM": SYSTEM, "BALL": BALL, "Figure": Figure, "Dataset": Dataset}
 
 
 def first(fig):
