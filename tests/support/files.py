@@ -9,7 +9,6 @@ import h5py
 import pytest
 
 import vibro_sweep as vs
-from support.contents import described  # noqa: F401  for faults/test_disk.py
 from support.oscillators import PAPER_NUMBERS
 from support.programs import main
 from support.scene_texts import parsed

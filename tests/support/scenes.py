@@ -4,7 +4,7 @@ import numpy as np
 import xarray  # noqa: F401  before a run begins that `done` is to see in the middle: loading it takes a second
 
 import vibro_sweep as vs
-from support.contents import arrays_of, assert_same_bits  # noqa: F401  for faults/test_disk.py
+from support.contents import arrays_of
 from support.oscillators import PAPER_NUMBERS
 from support.scene_texts import parsed
 

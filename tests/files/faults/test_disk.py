@@ -8,13 +8,12 @@ import subprocess
 
 import pytest
 from support import slow_cases
+from support.contents import arrays_of, assert_same_bits, described
 from support.faults import TEXT, counted, failing_run
-from support.files import described
+from support.programs import main
 from support.scene_texts import parsed
-from support.scenes import arrays_of, assert_same_bits
 
 import vibro_sweep as vs
-from vibro_sweep.cli import commands as cli
 
 
 @pytest.fixture
@@ -99,12 +98,12 @@ def test_disk_full_by_the_command_line(scene, path, tmp_path, capsys):
     (tmp_path / "the_scene.yaml").write_text(TEXT)
     command = ["run", str(tmp_path / "the_scene.yaml"), "-o", str(path), "--workers", "1"]
     with file_size_limit(800_000):
-        assert cli.main(command) == 2
+        assert main(command) == 2
     assert capsys.readouterr().err == (
         f"vibro-sweep: error: {path}.part: File too large; make room; "
         "what was computed until then is kept: --resume continues it\n"
     )
-    assert cli.main([*command, "--resume"]) == 0
+    assert main([*command, "--resume"]) == 0
 
 
 def test_output_folder_removed(scene, path, whole):
