@@ -27,6 +27,18 @@ def test_a_resonator_is_under_way(Q, observe):
     assert abs(data.approached_distance.item() / left - 1) < 1e-3
 
 
+def test_as_many_periods_more_as_are_said():
+    """From what is left by exp(-pi/Q) in a period, as long as the motion needs: its next periods are simulated."""
+    system = resonator(400)
+    data = vs.sweep(system, {"b": [1.1]}, transient=300, record=60, observe=["section"])
+    needed = np.log(data.approached_distance.item() / 3e-6) / np.log(1 / data.approached_factor.item())
+    states = [data[name].values[0, -1] for name in ("x1", "v1")]
+    later = vs.simulate(system, states, 2 * int(needed)).section
+    left = np.abs(later - later[-1]).max(axis=1) / np.abs(data.x1.values).max()
+    arrived = int(np.argmax(left <= 3e-6))
+    assert 0.9 < needed / arrived < 1.1
+
+
 @pytest.mark.parametrize("rate", [1e-2, 5e-3, 1e-3, 1e-4, 1e-5])
 @pytest.mark.parametrize("unit", [1e-12, 1e-6, 1.0, 1e9])
 def test_creep_is_under_way_in_any_unit_of_time(unit, rate):

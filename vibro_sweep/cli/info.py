@@ -148,7 +148,8 @@ def _to_go(file: h5py.File) -> str:
     needed = needed[needed > 0]
     if not len(needed):
         return ""
-    return f"; {len(needed):,} arrive at a periodic orbit after up to about {needed.max():.2g} periods more"
+    longest = float(f"{needed.max():.2g}")
+    return f"; {len(needed):,} arrive at a periodic orbit after up to about {longest:,.0f} periods more"
 
 
 def _exponents(file: h5py.File) -> list[str]:
