@@ -50,6 +50,7 @@ KINDS = {  # its study, in tests/support
     "scenes": "any_scenes.study",
     "runs-of-scenes": "any_scenes.study_of_runs",
     "extreme-numbers": "any_scenes.study_of_extremes",
+    "same-bits": "same_bits.study",
     "files": "fuzz_files.study",
     "kills": "kills.study",
     "units": "units.study",

@@ -7,7 +7,7 @@ from support import cases, refusals
 
 import vibro_sweep as vs
 
-NUMBER = {"scene": 269, "command": 75, "call": 511}
+NUMBER = {"scene": 272, "command": 75, "call": 511}
 ROWS = cases.rows("messages")
 
 

@@ -132,7 +132,7 @@ def calls(made: dict[str, Any]) -> dict[str, Call]:
     axes = each("axes", {"b": [6.5, 6.6]}, {"b": np.array([6.5, 6.6])}, {"b": (6.5,)}, {"b": xr.DataArray([6.5, 6.6])})
     axes["axes"] += [{"axes": {"b": {"start": 6.5, "stop": 6.6, "num": 2}}}, {"axes": {"b": range(6, 8)}}]
     axes["axes"] += [{"axes": {"x1": [0.0], "b": np.ma.array([6.5, 6.6])}}]
-    short = each("transient", 0, 1, np.int64(0)) | each("record", 4, 5.0)
+    short = each("transient", 0, 1, np.int64(0)) | each("record", 4, 5.0) | each("settle", None)
     start = each("start", None, REST, np.zeros(4), {"x1": 0.1}, {"random": 2}, xr.DataArray(np.zeros(4)))
     section = each("section", None, {"kind": "phase"}, {"kind": "impact", "stop": "left"})
     observe = each("observe", ["section"], {"section"}, ("section", "impacts"), (word for word in ["section"]))

@@ -172,7 +172,15 @@ def test_check_says_that_it_compiles_before_it_does(tmp_path, monkeypatch, capsy
 
 
 def test_what_check_says_of_load_and_compiling():
-    quiet = cost_text(Estimate(1, 1, 10, 100, 8.0, 7.9, 0.0))
+    quiet = cost_text(Estimate(1, 1, 10, 100, 8.0, 7.9, 8.0, 0.0))
     assert quiet.endswith("  time      about 8 s here")
-    busy = cost_text(Estimate(1, 1, 10, 100, 16.0, 8.0, 14.0))
+    busy = cost_text(Estimate(1, 1, 10, 100, 16.0, 8.0, 16.0, 14.0))
     assert "  time      about 16 s here beside what else runs now, 8 s alone\n  compiled  in 14 s just now" in busy
+
+
+def test_an_estimate_says_what_orbits_may_take_to_settle():
+    text = "sweep: {{b: {{start: 6, stop: 6.6, num: 8}}}}\norbit: {{transient: 100, record: 100{}}}\nobserve: [section]"
+    plain, more = (scene_of(text.format(word)).estimate() for word in ("", ", settle: 19900"))
+    assert plain.most == plain.seconds and "settle" not in cost_text(plain)
+    assert more.most > more.seconds > 0 and "if all orbits go on as far as `settle`" in cost_text(more)
+    assert cost.longest(scene_of(text.format(", settle: 19900"))) == 100

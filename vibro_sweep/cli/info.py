@@ -140,16 +140,17 @@ def _to_go(file: h5py.File) -> str:
     """How many periods more orbits need that approach a periodic one, as far as it is known."""
     if "approached_factor" not in file:
         return ""
-    known = [
-        periods_to_go(file["approached_distance"][piece], factors)
-        for piece, factors in checks.readable(file["approached_factor"])
-    ]
+    with np.errstate(all="ignore"):
+        known = [
+            periods_to_go(file["approached_distance"][piece], factors)
+            for piece, factors in checks.readable(file["approached_factor"])
+        ]
     needed = np.concatenate([values[np.isfinite(values)] for values in known]) if known else np.empty(0)
     needed = needed[needed > 0]
     if not len(needed):
         return ""
     longest = float(f"{needed.max():.2g}")
-    return f"; {len(needed):,} arrive at a periodic orbit after up to about {longest:,.0f} periods more"
+    return f"; {len(needed):,} arrive at a periodic orbit after up to about {longest:,.0f} periods more (`settle`)"
 
 
 def _exponents(file: h5py.File) -> list[str]:

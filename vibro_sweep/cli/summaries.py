@@ -80,10 +80,11 @@ def cost_text(cost: "Estimate") -> str:
     compiled = f"\n  compiled  in {duration(cost.compiling)} just now, once: no run needs it again" * bool(
         cost.compiling
     )
+    longer = f"; up to {duration(cost.most)} if all orbits go on as far as `settle`" * (cost.most > cost.seconds)
     return (
         f"  file      {points(cost.points)}, {size_of(cost.bytes)}\n"
         f"  work      {cost.orbits:,} orbits, {cost.periods:,} forcing periods in all\n"
-        f"  time      about {duration(cost.seconds)} here{busy}{compiled}"
+        f"  time      about {duration(cost.seconds)} here{busy}{longer}{compiled}"
     )
 
 
@@ -145,7 +146,7 @@ def summary(output: Path, report: "RunReport") -> str:
     bad = {name: count for name, count in report.statuses.items() if name not in ("ok", "not_settled") and count}
     named = ", ".join(f"{name} {count}" for name, count in bad.items())
     state = f"{report.bad} with a bad status ({named})" if report.bad else "all ok"
-    state += f"; {unsettled:,} not settled yet: a longer transient or record may tell" if unsettled else ""
+    state += f"; {unsettled:,} not settled yet: `settle`, or a longer record, may tell" if unsettled else ""
     if not report.computed:
         return f"{output} is complete already, from the same scene: {points(report.points)}, {state}"
     advice = [f"\n{one.name}: {one.advice}" for one in STATUSES.values() if one.name in bad]

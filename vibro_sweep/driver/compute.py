@@ -104,7 +104,7 @@ def _compute(block: Block) -> dict[str, np.ndarray]:
         steps, begins, arrays["results"], arrays["sections"], arrays["phases"], arrays["running"],
         _without_samples(workspace), plan, mapping,
     )  # fmt: skip
-    energies = energies_of(block, steps, kind, arrays["results"], begins) if "impact_power" in block.wanted else {}
+    energies = energies_of(block, steps, kind, arrays["results"]) if "impact_power" in block.wanted else {}
     ends = {} if block.last else {CHAIN_ENDS: with_velocities(_ends(arrays["results"][-1], anew), kind.masses, rate)}
     if plan.lyapunov:
         _drop_without_exponents(arrays)

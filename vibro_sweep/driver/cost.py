@@ -35,6 +35,7 @@ class Estimate:
     seconds : of the run beside what else the machine does now. Part of them is what each run begins with, loading
         kernels and measuring orbits, and the writing of its file
     alone : the same if the machine did nothing else
+    most : the same as `seconds` if every orbit had to go on for all periods of `settle`
     compiling : seconds for which the estimate itself had to compile kernels; they are kept, and no run needs them again
 
     Examples
@@ -55,6 +56,7 @@ class Estimate:
     bytes: int
     seconds: float
     alone: float
+    most: float
     compiling: float
 
 
@@ -73,7 +75,13 @@ def estimate(scene: Scene, workers: int | None = None) -> Estimate:
     beside = alone * crowding(cost, threads_of(scene, count))
     rest = beginning + writing_seconds(size)
     periods = orbits * (scene.transient + scene.record)
-    return Estimate(orbits, orbits, periods, size, rest + beside, rest + alone, sum(compiling))
+    most = rest + beside * longest(scene)
+    return Estimate(orbits, orbits, periods, size, rest + beside, rest + alone, most, sum(compiling))
+
+
+def longest(scene: Scene) -> float:
+    """So many times longer than others orbits may take that go on for all periods of `settle`."""
+    return (max(scene.transient, scene.settle or 0) + scene.record) / (scene.transient + scene.record)
 
 
 def writing_seconds(size: int) -> float:

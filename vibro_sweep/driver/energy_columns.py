@@ -4,7 +4,7 @@ import numpy as np
 
 from vibro_sweep.driver.blocks import Block
 from vibro_sweep.engine import points
-from vibro_sweep.engine.records import Kind, new_results, starts_after
+from vibro_sweep.engine.records import Kind
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.tables.flight import WIDTH
 from vibro_sweep.model import status
@@ -16,32 +16,21 @@ ROOM = 64  # impacts of a period there is room for at first
 MOST_ROOM = 8**4 * ROOM  # which takes 0.4 GB
 
 
-def energies_of(
-    block: Block, steps: np.ndarray, kind: Kind, results: np.ndarray, starts: np.ndarray
-) -> dict[str, np.ndarray]:
-    """The energies by dataset name, each of the shape of `steps` (n, m). starts: (2, m, 2 N + 2), as of
-    `run_points`."""
+def energies_of(block: Block, steps: np.ndarray, kind: Kind, results: np.ndarray) -> dict[str, np.ndarray]:
+    """The energies by dataset name, each of the shape of `steps` (n, m)."""
     from vibro_sweep.engine.energy import new_workspace, run_energy
 
     shape, states = steps.shape, 2 * kind.masses
-    begins = np.repeat(starts[1:], shape[0], axis=0)
-    begins[0] = starts[0]
-    going_on = status.is_valid(results["status"][:-1])[..., None]
-    begins[1:] = np.where(going_on, starts_after(results[:-1]), begins[1:])  # where chains go on
-    systems, begins, resting = steps.reshape(-1), begins.reshape(-1, states + 2), np.zeros(steps.size)
+    systems = steps.reshape(-1)
+    begins, resting, relaxed = (
+        np.ascontiguousarray(results[name].reshape(len(systems), *results[name].shape[2:]))
+        for name in ("begin", "resting_first", "relaxed_first")
+    )
+    begins = at_contact(systems, begins, resting)
     outcome = np.where(status.is_valid(results["status"]), status.NOT_COMPUTED, results["status"]).reshape(-1)
     plan = block.plan._replace(states=False, lyapunov=False, impacts=False, attractors=False, section_side=0.0)
-    plan = plan._replace(warm_up=0, parts=0, periods=0, record=1, transient=block.plan.transient - 1)
+    plan = plan._replace(warm_up=0, parts=0, periods=0, record=1, settle=0)
     workspace = points.new_workspace(plan, int(steps["cells"].max()), 0, LANES, kind)
-    if plan.transient >= 0:
-        passed = new_results((1, len(systems)), kind.masses)
-        nothing = np.empty((1, len(systems), 0))
-        points.run_points(
-            systems.reshape(1, -1), np.stack([begins, begins]), passed, nothing[..., None], nothing, nothing[..., None],
-            workspace, plan, None,
-        )  # fmt: skip
-        begins, resting = starts_after(passed[0]), passed["resting"][0].copy()  # as laid out as the other
-    begins, relaxed = at_contact(systems, begins[:, :states], resting), begins[:, states:].copy()
     wanted = {
         "loss": np.zeros(len(systems)),
         "squares": np.zeros((len(systems), states)),

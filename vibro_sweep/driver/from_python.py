@@ -45,6 +45,7 @@ def sweep(
     observe: Iterable[str] = ("section", "lyapunov"),
     start: "Start | Mapping[str, Any] | Sequence[float] | None" = None,
     transient: int = 1300,
+    settle: int | None = None,
     record: int = 200,
     section: "Section | Mapping[str, Any] | None" = None,
     trajectory: "Trajectory | Mapping[str, Any] | None" = None,
@@ -64,6 +65,7 @@ def sweep(
         {"b": {"start": 6.5, "stop": 6.9, "step": 0.0002}}, whose values are the decimal numbers
     observe, start, section, trajectory : as the keys of a scene in YAML; `start` may be a state (x1, v1, x2, v2) too
     transient, record : forcing periods
+    settle : forcing periods up to which orbits go on that are still under way after their transient; None: none does
     workers, progress : as of `run`
     output : a file, which is kept and read when numbers are used; needed where the results take more than 1 GB
     mode : as of `run`: "resume" continues an interrupted `output`, "overwrite" replaces it
@@ -105,6 +107,7 @@ def sweep(
         "sweep": axes,
         "start": start,
         "transient": transient,
+        "settle": settle,
         "record": record,
     }
     given |= {"section": section, "observe": observe, "trajectory": trajectory}

@@ -153,6 +153,7 @@ def _blocks(scene: Scene, sample: _Sample) -> list[Block]:
         sweep=sweep,
         start=replace(scene.start, count=min(scene.start.count, sample.starts)),
         transient=min(scene.transient, max(0, sample.periods - record)),
+        settle=None,
         record=record,
         trajectory=shown and replace(
             shown,

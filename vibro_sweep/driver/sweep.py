@@ -19,6 +19,7 @@ from vibro_sweep.driver.cost import (
     BLOCK_SECONDS,
     crowding,
     duration,
+    longest,
     orbit_cost,
     points_per_block,
     run_seconds,
@@ -150,7 +151,8 @@ def _results(
     else:  # on machines of which nothing is known
         seconds = cost.seconds * missing / side_by_side(scene, count)
     if seconds > WORTH_SAYING:
-        _log.info("%s orbits, about %s with %s workers", f"{missing:,}", duration(seconds), count)
+        more = f", up to {duration(seconds * longest(scene))} to settle" if scene.settle else ""
+        _log.info("%s orbits, about %s with %s workers%s", f"{missing:,}", duration(seconds), count, more)
     todo = (block for block in blocks(scene, size, orbits) if file.missing(whole_chains(block)))
 
     def window() -> int:  # one block for each worker: it gets its next when the one before is safe in the file

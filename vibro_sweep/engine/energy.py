@@ -192,7 +192,7 @@ def run_energy(
     for n in range(len(points)):
         if outcome[n] != status.NOT_COMPUTED:
             continue
-        stops = prepare(points[n : n + 1], 0, w, plan)
+        stops = prepare(points[n], 0, w, plan)
         set_state(o, e.flights.nodes[o.table], stops, 0, 0.0, begins[n])
         q = e.flights.oscillator[o.table, 0]
         rest, loss[n], outcome[n] = resting[n], 0.0, status.OK

@@ -9,7 +9,7 @@ import numpy as np
 from vibro_sweep.engine.arrival import REPEAT, ROUNDING, is_under_way, look, set_scale
 from vibro_sweep.engine.averages import keep_averages
 from vibro_sweep.engine.compliant.law import clear_contacts
-from vibro_sweep.engine.compliant.relaxing import bring_stops
+from vibro_sweep.engine.compliant.relaxing import bring_stops, place_at
 from vibro_sweep.engine.motion.orbits import reset_counts
 from vibro_sweep.engine.point_tables import to_masses
 from vibro_sweep.engine.simd.jit import inline, jit, noinline
@@ -27,36 +27,42 @@ from vibro_sweep.engine.variational.spectrum import (
     periods_read,
     time_average,
 )
-from vibro_sweep.model import status
+from vibro_sweep.model import exponents, status
+from vibro_sweep.model.exponents import LEAST_RECORD
 
-LEAST_RECORD = 40  # periods from which on a record can tell whether its orbit has arrived
 TRANSIENT, WARM_UP, RECORD, FLOQUET, PHASES = 0, 1, 2, 3, 6
+
+periods_to_go = jit(exponents.periods_to_go)
 
 
 @noinline
-def begin_phase(e, w, plan, phase, results):
-    """Set the orbits out. Returns how often the growth of their tangent vectors is to be read, or -1: nothing to do."""
+def begin_phase(e, w, plan, phase, points, results, lanes):
+    """Set the orbits out, of each of the `lanes` its number among the results. Returns how often the growth of their
+    tangent vectors is to be read, or -1: nothing to do."""
     if phase == TRANSIENT:
         e.tangent[0].wanted = e.strike[0].measured = False
-        set_out(e, plan.transient - plan.warm_up)
+        for i in range(len(lanes)):
+            e.orbits[i].periods = results[lanes[i]].more - plan.warm_up
         return 0
     if phase == RECORD:
         e.strike[0].measured = plan.impacts
         set_out(e, plan.record)
-        for i in range(len(results)):
+        for i in range(len(lanes)):
             reset_counts(e.orbits[i])
             begin_contacts(e.law, e.tangent[0], i, plan.contacts)
             put(e.orbits[i].largest, 0, 0.0)
             e.orbits[i].impacts_logged, e.orbits[i].log_side = 0, plan.section_side
+            if plan.energy and e.orbits[i].status == status.OK:
+                keep_begin(e, w, points[lanes[i]], results[lanes[i]], e.orbits[i])
         return plan.parts
     if not plan.lyapunov or (plan.order > 0 and phase == FLOQUET + BESIDE):  # points of the map may be behind a stop
         return -1
     if phase == WARM_UP:
-        begin_warm_up(e, len(results))
+        begin_warm_up(e, len(lanes))
         set_out(e, plan.warm_up)
         return 0
     set_out(e, 0)
-    begin_period(e, w, results, phase - FLOQUET)
+    begin_period(e, w, results, lanes, phase - FLOQUET)
     return 1
 
 
@@ -68,16 +74,35 @@ def set_out(e, periods):
 
 
 @noinline
-def end_phase(e, w, plan, phase, points, results, sections, phases, running):
-    """Keep what the phase has shown. One row for each orbit."""
+def end_phase(e, w, plan, phase, points, results, sections, phases, running, lanes):
+    """Keep what the phase has shown. One row for each orbit; `lanes` as of `begin_phase`."""
     if phase == WARM_UP:
-        end_warm_up(e, len(results))
+        end_warm_up(e, len(lanes))
     elif phase == RECORD:
-        for i in range(len(results)):
-            if e.orbits[i].status == status.OK:
-                keep_record(e, w, plan, points[i], results[i], sections[i], phases[i], running[i], e.orbits[i])
+        for i in range(len(lanes)):
+            k, o = lanes[i], e.orbits[i]
+            if o.status == status.OK:
+                keep_record(e, w, plan, points[k], results[k], sections[k], phases[k], running[k], o)
     elif phase >= FLOQUET:
-        read_period(e, w, results, phase - FLOQUET)
+        read_period(e, w, results, lanes, phase - FLOQUET)
+
+
+@jit
+def keep_begin(e, w, point, result, o):
+    """Keep where the record begins."""
+    for j in range(len(result.begin)):
+        result.begin[j] = o.X[j]
+    to_masses(point, result.begin[:], w.other)
+    result.resting_first = o.resting
+    keep_places(e.law, o, result, e.flights.oscillator[o.table, 0].width)
+
+
+@inline
+def keep_places(law, o, result, width):
+    """Keep where stops are that relax."""
+    if law is not None:
+        for n in range(2):
+            result.relaxed_first[n] = place_at(law.orbits[o.lane], o, n, 0, 0.0, width)
 
 
 @inline
@@ -181,13 +206,17 @@ def turn_states(point, states, o, other):
 
 
 @noinline
-def close(e, w, plan, points, results):
-    """Fill the results of the orbits that follow after all phases, and their statuses."""
-    for i in range(len(results)):
-        o, result = e.orbits[i], results[i]
+def close(e, w, plan, points, results, lanes):
+    """Fill the results of the orbits that follow after all phases, and their statuses; `lanes` as of `begin_phase`."""
+    for i in range(len(lanes)):
+        o, point, result = e.orbits[i], points[lanes[i]], results[lanes[i]]
+        failed = o.status != status.OK and o.status != status.NOT_COMPUTED
+        if failed and result.status == status.NOT_SETTLED and result.period == 0:
+            result.more = 0  # it has failed on its way: what is known of it is the record before
+            continue
         if plan.lyapunov:
             if o.status == status.OK:
-                close_spectrum(e, o, w, plan, points[i], result)
+                close_spectrum(e, o, w, plan, point, result)
             else:  # averages of a record whose multipliers were not found
                 put(result.lyapunov, 0, np.nan)
         if o.status != status.NOT_COMPUTED:
@@ -201,6 +230,24 @@ def close(e, w, plan, points, results):
             if plan.attractors and not under_way:
                 right, left = touches_of(e.law, o, result)
                 keep_averages(states, period_of(e, o), REPEAT, right, left, o, result)
+        before = result.transient_periods + plan.record if result.transient_periods >= 0 else 0
+        result.transient_periods = before + result.more
+        result.more = periods_more(plan, result)
+
+
+@jit
+def periods_more(plan, result):
+    """Forcing periods over which an orbit that is under way goes on before its next record; 0: this is its record.
+
+    As many as its approach predicts, but at most as many again as it has been carried: far from where it goes it may
+    have been faster, or slower.
+    """
+    so_far = result.transient_periods + plan.record
+    if result.status != status.NOT_SETTLED or plan.settle <= so_far + plan.warm_up:
+        return 0
+    more = periods_to_go(result.approached_distance, result.approached_factor, 0.5 * REPEAT)
+    more = min(more, float(so_far)) if more >= 0.0 else float(so_far)
+    return int(min(max(more, 1.0 + plan.warm_up), plan.settle - so_far))
 
 
 @jit

@@ -12,7 +12,7 @@ from vibro_sweep.engine.motion.together import Ensemble, Readings, flight_of, ne
 from vibro_sweep.engine.observe import PHASES, RECORD, begin_phase, close, end_phase
 from vibro_sweep.engine.point_tables import fill_tables, same_tables, set_graze, to_contact
 from vibro_sweep.engine.records import PAPER, Kind, point_of
-from vibro_sweep.engine.simd.jit import exported, inline, jit
+from vibro_sweep.engine.simd.jit import exported, inline, jit, noinline
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.tables import general_tables, series
 from vibro_sweep.engine.variational import tangent
@@ -32,10 +32,12 @@ class Plan(NamedTuple):
     transient: int
     record: int
     warm_up: int  # periods of the transient with tangent vectors
+    settle: int  # periods up to which orbits that are under way go on; 0: none does
     states: bool  # of every recorded section, for the scene or to find the period of the orbit
     lyapunov: bool  # with `states`
     impacts: bool
     contacts: bool
+    energy: bool
     attractors: bool  # with `lyapunov`
     section_side: float  # 0: the section is t = 0 mod T; else the stop of an impact section
     periods: int  # of the trajectory
@@ -53,6 +55,7 @@ class Workspace(NamedTuple):
     section: np.ndarray  # (orbits, record, 2 N)
     growth: np.ndarray  # (LANES, parts, 2 N)
     state: np.ndarray  # (2 N,), room for numbers of one orbit
+    lanes: np.ndarray  # (LANES,) the orbits of the block that are computed side by side
     # of multipliers.py, with n = 2 N vectors of as many numbers, or one more of 2 N + 2 numbers with compliant stops:
     axes: np.ndarray  # (LANES, numbers, vectors), and
     ends: np.ndarray  # those of one orbit
@@ -78,6 +81,7 @@ def new_workspace(plan: Plan, cells: int, samples: int, orbits: int = LANES, kin
         np.empty((orbits, plan.record if plan.states else 0, states)),
         np.empty((LANES, plan.parts, states)),
         np.empty(states),
+        np.zeros(LANES, np.int64),
         np.empty((LANES, numbers, vectors)),
         np.empty((numbers, vectors)),
         np.empty((LANES, 3, vectors)),
@@ -107,9 +111,9 @@ def give_law(law, i, point, q):
 
 
 @jit
-def prepare(points, i, w, plan):
+def prepare(point, i, w, plan):
     """Orbit i gets the tables of its point, those of the orbit before it if they are the same; and its stops."""
-    e, point, o, table = w.ensemble, points[i], w.ensemble.orbits[i], i
+    e, o, table = w.ensemble, w.ensemble.orbits[i], i
     if i > 0 and same_tables(point, w.built[e.orbits[i - 1].table], w.paper, w.other):
         table = e.orbits[i - 1].table
     o.table = table
@@ -132,25 +136,28 @@ def prepare(points, i, w, plan):
 
 
 @jit
-def set_orbits(points, starts, results, n, first, w, plan):
-    """Give eight orbits, from `first` on, the tables of their points of step n, and put them where they start."""
-    e, state, last = w.ensemble, w.state, min(first + LANES, points.shape[1])
+def set_orbits(points, starts, results, n, lanes, w, plan):
+    """Give orbits the tables of their points of step n, and put them where they start, or go on; lanes: which they are,
+    at most eight."""
+    e, state = w.ensemble, w.state
     for i in range(LANES):
         o = e.orbits[i]
         o.status = status.NOT_COMPUTED
-        if first + i >= last:
+        if i >= len(lanes):
             continue
-        point, result = points[n, first + i], results[n, first + i]
+        k = lanes[i]
+        point, result = points[n, k], results[n, k]
         if point.cells == 0:
             result.status = status.TOO_STIFF
             continue
-        stops = prepare(points[n, first:last], i, w, plan)
-        start = starts[min(n, 1), first + i]
-        goes_on = n > 0 and results[n - 1, first + i].status in status.VALID
+        stops = prepare(point, i, w, plan)
+        start, before = starts[min(n, 1), k], n if result.more > 0 else n - 1
+        goes_on = before >= 0 and results[before, k].status in status.VALID
+        result.more = result.more if result.more > 0 else plan.transient
         for j in range(len(state)):
-            state[j] = results[n - 1, first + i].end[j] if goes_on else start[j]
+            state[j] = results[before, k].end[j] if goes_on else start[j]
         if goes_on:
-            relax_from(e.law, i, results[n - 1, first + i].relaxed)
+            relax_from(e.law, i, results[before, k].relaxed)
         else:
             relax_from(e.law, i, start[len(state) :])
         to_contact(point, state, stops, w.other)
@@ -169,28 +176,55 @@ def run_points(points, starts, results, sections, phases, running, w, plan, mapp
     sections: (n, m, record, 2 N). phases: (n, m, record), for an impact section. running: (n, m, parts, 2 N), the
     exponents as they converge. mapping: as of `carry`.
 
+    Orbits that are under way to where they go are put together anew, eight at a time, and go on (`plan.settle`).
+
     For single orbits it does one step of this at a time (`plan.step`, one block): so nothing else need be compiled.
     """
-    e = w.ensemble
-    for first in range(0, points.shape[1], LANES):
-        last = min(first + LANES, points.shape[1])
+    together = points.shape[1] if plan.settle > 0 and len(points) == 1 else LANES  # chains do not wait for each other
+    for first in range(0, points.shape[1], together):
+        last = min(first + together, points.shape[1])
         for n in range(len(points)):
-            if e.halt[0] != 0:
-                return
-            if plan.step != MOTION:
-                set_orbits(points, starts, results, n, first, w, plan)
-            if plan.step == TABLES:
-                continue
-            rows, row = points[n, first:last], results[n, first:last]
-            for phase in range(PHASES):
-                parts = 0 if plan.step == MOTION else begin_phase(e, w, plan, phase, row)
-                if parts >= 0:
-                    keep = plan.states and (phase == RECORD or plan.step == MOTION)
-                    carry(e, mapping, Readings(w.section, keep, w.growth, parts))
-                    if plan.step == MOTION:
+            again, left = False, last - first
+            while left > 0:
+                left, k = 0, first
+                while k < last:
+                    k, count = next_lanes(results[n], k, last, again, w.lanes)
+                    lanes = w.lanes[:count]
+                    run_lanes(points, starts, results, sections, phases, running, w, plan, mapping, n, lanes)
+                    if w.ensemble.halt[0] != 0 or plan.step == MOTION:
                         return
-                    end_phase(
-                        e, w, plan, phase, rows, row,
-                        sections[n, first:last], phases[n, first:last], running[n, first:last],
-                    )  # fmt: skip
-            close(e, w, plan, rows, row)
+                    for i in lanes:
+                        left += results[n, i].more > 0
+                again = True
+
+
+@jit
+def next_lanes(results, k, last, again, lanes):
+    """The next orbits from k on, at most eight; again: of those that are under way. Returns where the search ended, and
+    how many they are."""
+    count = 0
+    while k < last and count < LANES:
+        if not again or results[k].more > 0:
+            lanes[count] = k
+            count += 1
+        k += 1
+    return k, count
+
+
+@noinline
+def run_lanes(points, starts, results, sections, phases, running, w, plan, mapping, n, lanes):
+    """Compute orbits of step n, side by side; lanes: which they are, at most eight. The others as of `run_points`."""
+    e = w.ensemble
+    if plan.step != MOTION:
+        set_orbits(points, starts, results, n, lanes, w, plan)
+    if plan.step == TABLES:
+        return
+    for phase in range(PHASES):
+        parts = 0 if plan.step == MOTION else begin_phase(e, w, plan, phase, points[n], results[n], lanes)
+        if parts >= 0:
+            keep = plan.states and (phase == RECORD or plan.step == MOTION)
+            carry(e, mapping, Readings(w.section, keep, w.growth, parts))
+            if plan.step == MOTION:
+                return
+            end_phase(e, w, plan, phase, points[n], results[n], sections[n], phases[n], running[n], lanes)
+    close(e, w, plan, points[n], results[n], lanes)

@@ -100,6 +100,10 @@ def result_of(masses: int) -> np.dtype:
             ("end", float, (2 * masses,)),  # the state at the last section, and
             ("resting", float),  # the side of the stop that M1 rests on there, or 0
             ("relaxed", float, 2),  # where compliant stops are that relax
+            ("begin", float, (2 * masses,)),  # as `end`, `resting` and `relaxed`, at the first section of the record,
+            ("resting_first", float),  # where the energy is observed
+            ("relaxed_first", float, 2),
+            ("more", np.int64),  # forcing periods over which it is carried before its record; 0: it has not begun
         ]
     )
 

@@ -127,7 +127,7 @@ def run_trajectories(points, results, hits, kept, w, plan):
         for s in range(results.shape[1]):
             result, o = results[p, s], e.orbits[0]
             if result.status in status.VALID:
-                stops = prepare(points[p : p + 1], 0, w, plan)
+                stops = prepare(points[p], 0, w, plan)
                 set_state(o, e.flights.nodes[o.table], stops, 0, 0.0, result.end)
                 o.resting = result.resting
                 hold(e.law, o, result.relaxed)

@@ -3,6 +3,7 @@
 import numpy as np
 
 ARRIVED = 3e-6  # distance from a periodic orbit, in parts of the sizes of coordinates, at which an orbit is there
+LEAST_RECORD = 40  # periods from which on a record can tell whether its orbit has arrived
 CERTAIN = 2.0  # standard errors by which an exponent must differ from zero to be above or below it
 RUNNING = 200  # points at which exponents that converge are stored
 
@@ -17,7 +18,6 @@ def periods_read(m, parts, periods):
     return -(-(m + 1) * periods // parts)
 
 
-def periods_to_go(distance, factor):
-    """Forcing periods after which a distance that shrinks by a factor in each of them is `ARRIVED`; NaN if unknown."""
-    with np.errstate(all="ignore"):
-        return np.ceil(np.maximum(np.log(ARRIVED / np.asarray(distance)) / np.log(factor), 0.0))
+def periods_to_go(distance, factor, goal=ARRIVED):
+    """Forcing periods after which a distance that shrinks by a factor in each of them is the goal; NaN if unknown."""
+    return np.ceil(np.maximum(np.log(goal / distance) / np.log(factor), 0.0))

@@ -48,6 +48,7 @@ def _attractor(name: str, label: str, text: str, dtype: str = "f8") -> Variable:
 
 _EXPONENTS, _MULTIPLIERS, _IMPACTS, _ENERGY = ("lyapunov",), ("multipliers",), ("impacts",), ("energy",)
 _CONTACTS, _PERIODS = ("contacts",), ("section", "multipliers", "attractors")
+SETTLE = "settle"  # the scene's key that asks how long transients were
 GAP = "gap"
 
 
@@ -111,6 +112,9 @@ _OF_ANY = (
     Variable(
         "multiplier_im", _MULTIPLIERS, "multiplier, imaginary part",
         "imaginary part of the Floquet multipliers; of a complex pair the positive one comes first", ("multiplier",),
+    ),
+    Variable(
+        "transient_periods", (SETTLE,), "transient in T", "forcing periods before the record", dtype="i8",
     ),
     Variable("multiplier_error", _MULTIPLIERS, "error of the multiplier", "error of the multipliers", ("multiplier",)),
     _attractor(
@@ -219,7 +223,7 @@ def of_an_impact(masses: int, gap: bool = False) -> tuple[str, ...]:
 def asked_for(keys: frozenset[str], at_impacts: bool, masses: int = 2, gap: bool = False) -> dict[str, Variable]:
     """The variables of a file, by name, in order.
 
-    keys : words of `observe`, and TRAJECTORY where the scene asks for one
+    keys : words of `observe`, and TRAJECTORY or SETTLE where the scene has these keys
     at_impacts : whether the section is at impacts
     """
     return {

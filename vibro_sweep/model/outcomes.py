@@ -76,7 +76,7 @@ REASONS = {  # why a point of a sweep lies in no window; 0: it lies in one
     ),
     "not_settled": Outcome(
         "neither periodic within the record nor known to be anything else, or not yet where it attracts to",
-        "Sweep again with a longer `transient`; with a longer `record` too, to recognise longer periods.",
+        "Sweep again with `settle`, or a longer `transient`; with a longer `record` too, to recognise longer periods.",
     ),
     "failed": Outcome(
         "the orbit, or the equations of its impacts, could not be computed",
@@ -109,7 +109,7 @@ EDGES = {  # of a plane between points of different periods: why; what says most
         "Both attractors coexist. Use several starts, and compare their shares of the starts.",
     ),
     "not_settled": Outcome(
-        "the recorded orbit is not yet the periodic one that it approaches", "Sweep again with a longer `transient`."
+        "the recorded orbit is not yet the periodic one that it approaches", "Sweep again with `settle`."
     ),
     "failed": Outcome(
         "the orbit could not be followed", "Follow it by hand, with `periodic_orbit` and `continue_orbit`."

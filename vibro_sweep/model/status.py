@@ -62,8 +62,8 @@ STATUSES = {
     NOT_SETTLED: Status(
         "not_settled",
         "a remark, the numbers are valid: the orbit is still on its way to a periodic one",
-        "Lengthen `transient`, by what `approached_distance` and `approached_factor` say, or `info`, where they are "
-        "known; and `record` where a long period is expected. Chaos that ends after the record cannot be distinguished "
+        "Let such orbits go on by `settle`, as far as `info` says, or `approached_distance` and `approached_factor`; "
+        "lengthen `record` where a long period is expected. Chaos that ends after the record cannot be distinguished "
         "from chaos that lasts.",
     ),
 }

@@ -9,7 +9,7 @@ class Variable(NamedTuple):
     """A variable of a file."""
 
     name: str
-    asked_by: tuple[str, ...]  # words of `observe`, or TRAJECTORY; of none: it is always there
+    asked_by: tuple[str, ...]  # words of `observe`, TRAJECTORY or SETTLE; of none: it is always there
     label: str  # short: of an axis; `long_name` in the file
     text: str  # `description` in the file
     dimensions: tuple[str, ...] = ()

@@ -1,6 +1,7 @@
 """How the keys of a scene must fit each other: none contradicts another, none is without effect."""
 
 from vibro_sweep.model.any_oscillator import AnyOscillator
+from vibro_sweep.model.exponents import LEAST_RECORD
 from vibro_sweep.model.observables import WORDS
 from vibro_sweep.model.stops import why_rigid
 
@@ -15,6 +16,7 @@ def combination_problems(form: Form, data: dict, system: AnyOscillator | None) -
     for name in sorted(form.observe):
         if data.get("observe", []).count(name) > 1:
             problems.append(problem("observe", data["observe"], f"names {name} twice"))
+    problems += _settle_problems(form.orbit)
     if section.kind == "impact" and "section" not in form.observe:
         text = "the section is not observed, and would have no effect; leave it out, or observe section"
         problems.append(problem("section.kind", section.kind, text))
@@ -25,6 +27,19 @@ def combination_problems(form: Form, data: dict, system: AnyOscillator | None) -
     if not form.observe and form.trajectory is None:
         text = f"nothing would be computed; name some of {', '.join(WORDS)}, or ask for a trajectory"
         problems.append(problem("observe", [], text))
+    return problems
+
+
+def _settle_problems(orbit: Form) -> list[str]:
+    if orbit.settle is None:
+        return []
+    problems = []
+    if orbit.settle <= orbit.transient:
+        text = f"must be above transient = {orbit.transient}, which every orbit has; leave it out to let none go on"
+        problems.append(problem("orbit.settle", orbit.settle, text))
+    if orbit.record < LEAST_RECORD:
+        text = f"must be at least {LEAST_RECORD} with `settle`: fewer section points do not tell what is under way"
+        problems.append(problem("orbit.record", orbit.record, text))
     return problems
 
 

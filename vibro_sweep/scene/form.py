@@ -111,6 +111,13 @@ class OrbitForm(Form):
     """The length of every orbit in forcing periods T = 2 pi/omega."""
 
     transient: Whole = Field(ge=0, le=MAX_COUNT, description="periods that are computed first and not recorded")
+    settle: Whole | None = Field(
+        default=None,
+        ge=1,
+        le=MAX_COUNT,
+        description="orbits that are still under way after their transient go on, up to so many periods before the "
+        "record; the file says how many each took",
+    )
     record: Whole = Field(
         ge=1, le=MAX_COUNT, description="periods that are recorded; at a section of impacts at most so many of them"
     )

@@ -32,8 +32,8 @@ def attributes(scene: Scene) -> dict[str, Any]:
     The system's numbers, `tau` in radians, `b_star` (`b_right` and `b_left` where these may differ), its options but
     for matrices, and for units, which the variables have; the `type` of a model and `along` where they are not the
     paper's; `dynamics` with its `order` and `expand_at`, the initial state (`start_x1`, ...; of a `follow` that of its
-    first point) unless it is random or held by a stop, `transient` and `record` in forcing periods, `section`: `phase`,
-    or `impact` with `section_stop`;
+    first point) unless it is random or held by a stop, `transient`, `record` and, where there is one, `settle` in
+    forcing periods, `section`: `phase`, or `impact` with `section_stop`;
     `picture` where there is one.
     """
     system = scene.system
@@ -56,6 +56,7 @@ def attributes(scene: Scene) -> dict[str, Any]:
         state = dict(zip(start(system.masses), scene.start.state, strict=True))
         result |= {name: value for name, value in state.items() if name not in scene.sweep}
     result |= {"transient": scene.transient, "record": scene.record, "section": scene.section.kind}
+    result |= {} if scene.settle is None else {"settle": scene.settle}
     result |= {"section_stop": scene.section.stop} if scene.section.kind == "impact" else {}
     return result | ({"picture": scene.picture} if scene.picture else {})
 

@@ -77,7 +77,7 @@ class Scene:
     dynamics : "flow", or "map" with its `order` and the clearance `expand_at` at which it is expanded; None: b*
     sweep : name -> (n,) values, of none, one or two numbers in the order of the file's dimensions
     start, section, trajectory : as `Start`, `Section` and `Trajectory` say
-    transient, record : forcing periods
+    transient, settle, record : forcing periods; settle: None where no orbit goes on after its transient
     observe : words of what is computed
     picture : kind that is drawn by default
     source : the file that it was read from
@@ -103,6 +103,7 @@ class Scene:
     sweep: dict[str, np.ndarray]  # of the start: start_x1, ...
     start: Start
     transient: int
+    settle: int | None
     record: int
     section: Section
     observe: frozenset[str]
@@ -184,10 +185,15 @@ class Scene:
         """Orbits in all."""
         return math.prod(self.shape)
 
+    @property
+    def _transient(self) -> str:
+        """The length of transients, in words."""
+        return f"{self.transient:,}" if self.settle is None else f"{self.transient:,} to {self.settle:,}"
+
     def __repr__(self) -> str:
         axes = ", ".join(f"{key} = {v[0]:g} .. {v[-1]:g} ({len(v):,} values)" for key, v in self.sweep.items())
         name = self.name if len(self.name) <= 40 else f"{self.name[:37]}..."
-        periods = f"{self.transient:,} + {self.record:,} forcing periods"
+        periods = f"{self._transient} + {self.record:,} forcing periods"
         return f"<Scene {name!r}: {axes or 'one point'}; {periods}; {', '.join(sorted(self.observe)) or 'nothing'}>"
 
     def __str__(self) -> str:
@@ -214,7 +220,7 @@ class Scene:
         lines = [
             " x ".join(axes) or "one point",
             textwrap.fill(f"  system    {kind}{system}", 88, subsequent_indent=12 * " ", break_long_words=False),
-            f"  orbits    {starts[self.start.kind]}; {self.transient:,} + {self.record:,} forcing periods",
+            f"  orbits    {starts[self.start.kind]}; {self._transient} + {self.record:,} forcing periods",
             f"  section   {section}",
             f"  observe   {', '.join(sorted(self.observe)) or 'nothing'}",
         ]
@@ -287,6 +293,7 @@ def scene_of(data: object, name: str, given: str | None = None, built: Built | N
         sweep=sweep,
         start=start_of(form.start, masses),
         transient=form.orbit.transient,
+        settle=form.orbit.settle,
         record=form.orbit.record,
         section=Section(form.section.kind, form.section.stop),
         observe=form.observe,

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from .scene import Scene
 
 _KEYS = {dimension: key for key, dimension in START.items()}  # start_x1 -> x1
-_ORBIT = ("transient", "record")
+_ORBIT = ("transient", "settle", "record")
 SHORTEST_PROGRESSION = 3
 MANY = 10_000  # values, of which each wrong one is named
 LONGEST = 100  # entries of what a scene of branches or curves holds
@@ -37,7 +37,7 @@ def data_of(scene: "Scene") -> dict[str, Any]:
         "system": _system(scene.system, scene.sweep),
         "sweep": {_KEYS.get(key, key): _axis(values) for key, values in scene.sweep.items()},
         "start": _start(scene.start, scene.sweep, scene.system.masses),
-        "orbit": {"transient": scene.transient, "record": scene.record},
+        "orbit": {name: getattr(scene, name) for name in _ORBIT if getattr(scene, name) is not None},
         "section": {"kind": scene.section.kind},
         "observe": sorted(scene.observe),
     }

@@ -11,7 +11,7 @@ from vibro_sweep.model.variable import Variable
 from vibro_sweep.model.wording import sentence
 
 # the attributes of a file that hold a number, or a word, for all points (scene/resolved_numbers.py)
-NUMBERS = (*catalogue.NUMBERS, "order", "expand_at", "transient", "record")
+NUMBERS = (*catalogue.NUMBERS, "order", "expand_at", "transient", "settle", "record")
 WORDS = ("stops", "dynamics", "type", "section", "section_stop")
 MATRIX = ("row", "column")  # the dimensions of a matrix
 # how HDF5 joins datasets and their dimensions, and how CF names coordinates

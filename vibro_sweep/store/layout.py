@@ -7,7 +7,7 @@ import numpy as np
 from vibro_sweep.model.dimensions import DIMENSIONS, averaged
 from vibro_sweep.model.dimensions import dimensions as dimensions_of
 from vibro_sweep.model.exponents import RUNNING, periods_read
-from vibro_sweep.model.observables import asked_for
+from vibro_sweep.model.observables import SETTLE, asked_for
 from vibro_sweep.model.trajectory_variables import TRAJECTORY
 from vibro_sweep.model.variable import Variable
 from vibro_sweep.scene import Scene, resolved_numbers
@@ -17,7 +17,7 @@ CHUNK_BYTES = 2**17  # read at once
 
 def quantities(scene: Scene) -> dict[str, Variable]:
     """The datasets that a scene asks for; what it does not observe is not there."""
-    asked = scene.observe | {TRAJECTORY} if scene.trajectory else scene.observe
+    asked = scene.observe | ({TRAJECTORY} if scene.trajectory else set()) | ({SETTLE} if scene.settle else set())
     system = scene.system
     return asked_for(asked, scene.section.kind == "impact", system.masses, not system.gap_is_x1)
 

@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator
 
 from vibro_sweep.model.models import DEFAULT
-from vibro_sweep.model.observables import VARIABLES, WORDS
+from vibro_sweep.model.observables import SETTLE, VARIABLES, WORDS
 from vibro_sweep.model.trajectory_variables import TRAJECTORY
 from vibro_sweep.scene import json_schema
 
@@ -106,8 +106,9 @@ def _words() -> Iterator[str]:
     yield "## Words of `observe`\n"
     asked = {
         word: [one.name for one in VARIABLES if word in one.asked_by and not one.at_impacts]
-        for word in (*WORDS, TRAJECTORY)
+        for word in (*WORDS, TRAJECTORY, SETTLE)
     }
     rows = [(f"`{word}`", one.text, listed(asked[word])) for word, one in WORDS.items()]
     yield from table(("word", "what is computed", "variables of the file"), rows)
-    yield f"The key `{TRAJECTORY}` asks for {listed(asked[TRAJECTORY])}; `status` is always there.\n"
+    yield f"The key `{TRAJECTORY}` asks for {listed(asked[TRAJECTORY])}; `{SETTLE}` for {listed(asked[SETTLE])}; "
+    yield "`status` is always there.\n"

@@ -33,13 +33,13 @@ OFF = 16.0  # by how many of them rounding at one impact moves the orbit; that a
 
 
 @jit
-def begin_period(e, w, results, which):
+def begin_period(e, w, results, lanes, which):
     """Set periodic orbits out for exactly one more period of each; beside the orbit those that touch a stop and do not
     rest: motion that touches none has the same multipliers there."""
     t = e.tangent[0]
     t.collected = True
-    for i in range(len(results)):
-        o, result = e.orbits[i], results[i]
+    for i in range(len(lanes)):
+        o, result = e.orbits[i], results[lanes[i]]
         goes = o.status == status.OK and result.period > 0
         if which == BESIDE:
             touches = o.impacts_left + o.impacts_right > 0 or o.pressed_time > 0.0
@@ -83,10 +83,10 @@ def step_aside(e, o, direction, state):
 
 
 @noinline
-def read_period(e, w, results, which):
+def read_period(e, w, results, lanes, which):
     """The multipliers over the first of three periods; with their errors over the next; and what the last adds."""
     t = e.tangent[0]
-    for i in range(len(results)):
+    for i in range(len(lanes)):
         o = e.orbits[i]
         if which == BESIDE and o.periods > 0:
             end_beside(e.law, i)
