@@ -34,7 +34,7 @@ class Block(NamedTuple):
     starts: np.ndarray | tuple[int, int]  # (s, 4) for all points; or (count, seed), drawn at each
     from_rest: bool  # at rest, and where zero is behind a stop, held by that
     part: slice  # of the starts
-    begun: np.ndarray | None  # (chains, 2 N + 2): where chains go on that another block has begun
+    begun: np.ndarray | None  # (chains, 2 N + 3): where chains go on that another block has begun
     follow: bool
     reverse: bool  # of a `follow`: along falling index
     wanted: frozenset[str]  # datasets
@@ -133,7 +133,7 @@ def blocks(scene: Scene, points_per_block: int, most_orbits: int | None = None) 
 
 
 def next_part(scene: Scene, block: Block, ends: np.ndarray) -> Block:
-    """The part of a block's chains after it, from where they end, (chains, 2 N + 2)."""
+    """The part of a block's chains after it, from where they end, (chains, 2 N + 3)."""
     along, extent = block.box[0], block.shape[0]
     length = along.stop - along.start
     if block.reverse:

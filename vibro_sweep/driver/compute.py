@@ -57,7 +57,7 @@ _local = threading.local()
 def compute(block: Block) -> tuple[tuple[slice, ...], dict[str, np.ndarray]]:
     """The block's box and its arrays by dataset name; runs anywhere, needs nothing but the block.
 
-    Where chains go on in another block, `CHAIN_ENDS` among the arrays has the starts (chains, 2 N + 2) to go on from.
+    Where chains go on in another block, `CHAIN_ENDS` among the arrays has the starts (chains, 2 N + 3) to go on from.
     Raises BlockError, also where the program that made the block has another version.
     """
     worker = f"worker {platform.node()}, process {os.getpid()}"
@@ -105,7 +105,7 @@ def _compute(block: Block) -> dict[str, np.ndarray]:
         _without_samples(workspace), plan, mapping,
     )  # fmt: skip
     energies = energies_of(block, steps, kind, arrays["results"]) if "impact_power" in block.wanted else {}
-    ends = {} if block.last else {CHAIN_ENDS: with_velocities(_ends(arrays["results"][-1], anew), kind.masses, rate)}
+    ends = {} if block.last else {CHAIN_ENDS: with_velocities(_ends(arrays["results"][-1], steps[-1], anew), kind.masses, rate)}
     if plan.lyapunov:
         _drop_without_exponents(arrays)
     turn = -1 if block.reverse else 1
@@ -123,9 +123,9 @@ def _compute(block: Block) -> dict[str, np.ndarray]:
     return in_users_time(named, kind.masses, rate) | ends
 
 
-def _ends(last: np.ndarray, anew: np.ndarray) -> np.ndarray:
-    """The starts from which chains go on; anew: those after a point that failed."""
-    return np.where(status.is_valid(last["status"])[:, None], starts_after(last), anew)
+def _ends(last: np.ndarray, points: np.ndarray, anew: np.ndarray) -> np.ndarray:
+    """The starts from which chains go on after the last results, of these points; anew: those after one that failed."""
+    return np.where(status.is_valid(last["status"])[:, None], starts_after(last, points["tau"]), anew)
 
 
 def _drop_without_exponents(arrays: dict[str, np.ndarray]) -> None:

@@ -9,7 +9,7 @@ from vibro_sweep.engine.any_points import any_points, kind_of
 from vibro_sweep.engine.compliant.law import LOGGED
 from vibro_sweep.engine.motion import orbits
 from vibro_sweep.engine.point_tables import ON_STOP
-from vibro_sweep.engine.records import PAPER, POINT, Kind, new_results
+from vibro_sweep.engine.records import PAPER, POINT, Kind, new_results, starts_at
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.tables import cells
 from vibro_sweep.engine.tables.flight import Flight
@@ -167,7 +167,7 @@ class Engine:
         nothing = np.empty((1, count, 0, self.states))
         workspace = self._workspace._replace(section=nothing[0] if section is None else section)
         points.run_points(
-            self.point.repeat(count).reshape(1, count), np.zeros((2, count, self.states + 2)),
+            self.point.repeat(count).reshape(1, count), starts_at(np.zeros((2, count, self.states))),
             new_results((1, count), self.kind.masses), nothing, np.empty((1, count, 0)), nothing,
             workspace._replace(ensemble=workspace.ensemble._replace(**kept)),
             plan_of()._replace(step=step, states=section is not None), None,

@@ -1,10 +1,11 @@
 """A block: for each orbit the tables of its point, its motion, and what the scene observes of it."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.engine.compliant.law import keep_between, relax_from, set_law
+from vibro_sweep.engine.compliant.law import bring_relaxing, keep_between, relax_from, set_law
 from vibro_sweep.engine.motion import strike
 from vibro_sweep.engine.motion.ensemble import carry
 from vibro_sweep.engine.motion.orbits import Stops, new_records, set_state
@@ -158,21 +159,34 @@ def set_orbits(points, starts, results, n, lanes, w, plan):
             state[j] = results[before, k].end[j] if goes_on else start[j]
         if goes_on:
             relax_from(e.law, i, results[before, k].relaxed)
+            phase = points[before, k].tau
         else:
-            relax_from(e.law, i, start[len(state) :])
+            relax_from(e.law, i, start[len(state) : len(state) + 2])
+            phase = start[len(state) + 2]
         to_contact(point, state, stops, w.other)
         if plan.order == 0:  # points of the map may lie beyond the stops
             keep_between(e.law, i, state, stops)
-        set_state(o, e.flights.nodes[o.table], stops, 0, 0.0, state)
+        cell, offset = place_of(phase, point.tau, e.flights.oscillator[o.table, 0]) if plan.order == 0 else (0, 0.0)
+        bring_relaxing(e.law, i, cell, offset)
+        set_state(o, e.flights.nodes[o.table], stops, cell, offset, state)
+
+
+@jit
+def place_of(phase, tau, q):
+    """Cell and offset in the period at which the phase of the force is this one, and not tau, as at t = 0, where it is
+    NaN."""
+    time = ((phase - tau) % (2.0 * math.pi)) / q.omega
+    cell = int(time / q.width) if time > 0.0 else 0
+    return (cell, time - cell * q.width) if 0 < time and cell < q.cells else (0, 0.0)
 
 
 @exported
 def run_points(points, starts, results, sections, phases, running, w, plan, mapping):
     """Compute a block. n = steps, m = orbits; observations that are not asked for have no samples.
 
-    points: (n, m) of `point_of`. starts: (2, m, 2 N + 2), at the first step, and at a step after one that failed:
-    states, and the places of stops that relax; at the others an orbit goes on from where it ended, with the next
-    point's numbers. results: (n, m) of `result_of`.
+    points: (n, m) of `point_of`. starts: (2, m, 2 N + 3), at the first step, and at a step after one that failed:
+    states, the places of stops that relax, and the phase of the force, NaN at t = 0; at the others an orbit goes on
+    from where it ended, at the phase that the force had there, with the next point's numbers. results: (n, m) of `result_of`.
     sections: (n, m, record, 2 N). phases: (n, m, record), for an impact section. running: (n, m, parts, 2 N), the
     exponents as they converge. mapping: as of `carry`.
 

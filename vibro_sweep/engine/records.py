@@ -124,10 +124,11 @@ def new_results(shape: tuple[int, ...], masses: int = 2) -> np.ndarray:
 
 
 def starts_at(states: np.ndarray) -> np.ndarray:
-    """Starts (..., 2 N + 2) of orbits at these states (..., 2 N), with all stops relaxed."""
-    return np.concatenate([states, np.zeros((*states.shape[:-1], 2))], axis=-1)
+    """Starts (..., 2 N + 3) of orbits at these states (..., 2 N) at t = 0, with all stops relaxed."""
+    return np.concatenate([states, np.zeros((*states.shape[:-1], 2)), np.full((*states.shape[:-1], 1), np.nan)], axis=-1)
 
 
-def starts_after(results: np.ndarray) -> np.ndarray:
-    """Starts (..., 2 N + 2) of orbits that go on from these results: states, and the places of stops that relax."""
-    return np.concatenate([results["end"], results["relaxed"]], axis=-1)
+def starts_after(results: np.ndarray, tau: np.ndarray) -> np.ndarray:
+    """Starts (..., 2 N + 3) of orbits that go on from these results: states, the places of stops that relax, and the
+    phase of the force there, tau (...)."""
+    return np.concatenate([results["end"], results["relaxed"], tau[..., None]], axis=-1)

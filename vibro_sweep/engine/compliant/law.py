@@ -180,6 +180,15 @@ def relax_from(law, i, places):
 
 
 @inline
+def bring_relaxing(law, i, cell, offset):
+    """Stops that relax are where they are at this offset of this cell, not at the beginning of the period."""
+    if law is not None:
+        contact = law.orbits[i]
+        for n in range(2):
+            contact.cell[n], contact.offset[n] = cell, offset
+
+
+@inline
 def begin_beside(law, o, width):
     """Another orbit is followed from beside this one: nothing is pressed, and stops relax from where they are.
 
