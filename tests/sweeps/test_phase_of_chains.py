@@ -1,4 +1,6 @@
-"""Orbits that follow each other go on at the phase that the force had: where the section lies is no matter of theirs."""
+"""Orbits that follow each other go on at the phase that the force had, wherever their sections lie."""
+
+import itertools
 
 import numpy as np
 import pytest
@@ -22,7 +24,7 @@ def test_each_step_is_the_motion_from_where_the_last_one_ended(stops, direction)
     data = vs.sweep(system, {"omega": omega}, start={"follow": direction}, transient=0, record=4, observe=["section"])
     tau, order = data.tau.values, np.arange(9) if direction == "up" else np.arange(9)[::-1]
     assert np.abs(np.diff(np.unwrap(tau))).max() > 1
-    for last, here in zip(order, order[1:], strict=False):
+    for last, here in itertools.pairwise(order.tolist()):
         begin = (tau[last] - tau[here]) % (2 * np.pi) / omega[here]
         state = [data[name].values[last, -1] for name in NAMES]
         one = system.replace(omega=float(omega[here]), tau=float(tau[here]))

@@ -12,7 +12,10 @@ import numpy as np
 from vibro_sweep.cli.ragged_tables import curves_table, special_table, windows_table
 from vibro_sweep.model.branch_file import CHART, WINDOWS
 from vibro_sweep.model.exponents import CERTAIN, periods_to_go, sign_of
+from vibro_sweep.model.observables import GAP
+from vibro_sweep.model.outcomes import REASONS
 from vibro_sweep.model.status import NOT_COMPUTED, NOT_SETTLED, STATUSES, VALID, meaning
+from vibro_sweep.scene.scene import parse_scene
 from vibro_sweep.store import checks
 from vibro_sweep.store.attributes import is_flat, quantities_of, text, texts
 from vibro_sweep.store.opening import REMEDY, ForeignError, StoreError, opened
@@ -63,7 +66,7 @@ def _examined(file: h5py.File, path: Path, lost: int) -> Description:
     lines += [_dataset(name, file[name].shape, _described(file[name])) for name in quantities_of(file)]
     lines += _progress(file)
     lines.append(f"damaged      {found}; {REMEDY}" if found else "checksums    all hold")
-    lines += [*_exponents(file), *_accuracy(file), *made_by]
+    lines += [*_turning(file), *_exponents(file), *_accuracy(file), *made_by]
     return Description("\n".join(lines), bool(found))
 
 
@@ -151,6 +154,18 @@ def _to_go(file: h5py.File) -> str:
         return ""
     longest = float(f"{needed.max():.2g}")
     return f"; {len(needed):,} arrive at a periodic orbit after up to about {longest:,.0f} periods more (`settle`)"
+
+
+def _turning(file: h5py.File) -> list[str]:
+    """The line on orbits without a period because nothing holds the masses: only a contact between them leaves that."""
+    if not {GAP, "period"} <= set(quantities_of(file)):
+        return []
+    without = sum(int((periods == 0).sum()) for _, periods in checks.readable(file["period"]))
+    from vibro_sweep.engine.impulses.free_modes import turns  # the engine takes a second to be imported
+
+    if not without or not turns(parse_scene(text(file, "scene")).system.linear):
+        return []
+    return [f"turning      {without:,} orbits: {REASONS['turning'].text}"]
 
 
 def _exponents(file: h5py.File) -> list[str]:

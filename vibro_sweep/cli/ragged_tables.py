@@ -9,6 +9,7 @@ from vibro_sweep.model.bifurcations import CODIMENSION_TWO, CRITICALITIES, CURVE
 from vibro_sweep.model.outcomes import EDGES, REASONS
 from vibro_sweep.model.window_columns import UNVISITED
 from vibro_sweep.model.window_families import families
+from vibro_sweep.model.wording import without_rounding
 
 LONGEST_WORD = 12  # letters of an itinerary that is printed as it is
 
@@ -119,7 +120,8 @@ def ending(arrays: Mapping, special: int) -> str:
 
 def _number(arrays: Mapping, special: int) -> str:
     """The parameter at a special point, with the digits that are known."""
-    value, error = float(np.asarray(arrays["special_value"])[special, 0]), float(arrays["special_error"][special])
+    values, error = np.asarray(arrays["special_value"])[:, 0], float(arrays["special_error"][special])
+    value = without_rounding(float(values[special]), np.ptp(values))
     if not 0 < error < 1e-3:
         return f"{value:.6g}"
     return f"{value:.{min(15, max(3, int(-np.log10(error))))}f}"

@@ -105,7 +105,9 @@ def _compute(block: Block) -> dict[str, np.ndarray]:
         _without_samples(workspace), plan, mapping,
     )  # fmt: skip
     energies = energies_of(block, steps, kind, arrays["results"]) if "impact_power" in block.wanted else {}
-    ends = {} if block.last else {CHAIN_ENDS: with_velocities(_ends(arrays["results"][-1], steps[-1], anew), kind.masses, rate)}
+    ends = {}
+    if not block.last:
+        ends[CHAIN_ENDS] = with_velocities(_ends(arrays["results"][-1], steps[-1], anew), kind.masses, rate)
     if plan.lyapunov:
         _drop_without_exponents(arrays)
     turn = -1 if block.reverse else 1

@@ -186,9 +186,9 @@ def run_points(points, starts, results, sections, phases, running, w, plan, mapp
 
     points: (n, m) of `point_of`. starts: (2, m, 2 N + 3), at the first step, and at a step after one that failed:
     states, the places of stops that relax, and the phase of the force, NaN at t = 0; at the others an orbit goes on
-    from where it ended, at the phase that the force had there, with the next point's numbers. results: (n, m) of `result_of`.
-    sections: (n, m, record, 2 N). phases: (n, m, record), for an impact section. running: (n, m, parts, 2 N), the
-    exponents as they converge. mapping: as of `carry`.
+    from where it ended, at the phase that the force had there, with the next point's numbers. results: (n, m) of
+    `result_of`. sections: (n, m, record, 2 N). phases: (n, m, record), for an impact section. running: (n, m, parts,
+    2 N), the exponents as they converge. mapping: as of `carry`.
 
     Orbits that are under way to where they go are put together anew, eight at a time, and go on (`plan.settle`).
 

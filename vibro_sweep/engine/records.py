@@ -125,7 +125,9 @@ def new_results(shape: tuple[int, ...], masses: int = 2) -> np.ndarray:
 
 def starts_at(states: np.ndarray) -> np.ndarray:
     """Starts (..., 2 N + 3) of orbits at these states (..., 2 N) at t = 0, with all stops relaxed."""
-    return np.concatenate([states, np.zeros((*states.shape[:-1], 2)), np.full((*states.shape[:-1], 1), np.nan)], axis=-1)
+    return np.concatenate(
+        [states, np.zeros((*states.shape[:-1], 2)), np.full((*states.shape[:-1], 1), np.nan)], axis=-1
+    )
 
 
 def starts_after(results: np.ndarray, tau: np.ndarray) -> np.ndarray:

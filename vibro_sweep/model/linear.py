@@ -26,6 +26,7 @@ MATRICES = ("M", "K", "C", "normal", "omega")  # fields that move free modes,
 FORCED = (*MATRICES, "constant", "sine", "cosine")  # the steady motion too,
 MOTION = (*FORCED, "tau")  # and the flight from a time on
 RANKS = {"M": 2, "K": 2, "C": 2, "normal": 1, "constant": 1, "sine": 1, "cosine": 1}  # fields that are no numbers
+LEAST = 1e-100  # stiffness of a stop that is a damper alone: no double is that small beside another of a machine
 STEP = 1e-100  # of the complex step: its square underflows, so that a derivative has no truncation error
 
 
@@ -294,13 +295,14 @@ def contact(*, b, offset=0.0, stops="both", release="displacement", **numbers) -
     if unknown := numbers.keys() - {one.name for one in STOP_NUMBERS}:
         raise TypeError(f"stops have no {', '.join(sorted(unknown))}")
     low, high = stop_of(numbers, "left"), stop_of(numbers, "right")
-    fields = {"R": ("R", np.nan), "k": ("k_stop", 0.0), "c": ("c_stop", 0.0), "p": ("preload", 0.0)}
+    fields = {"R": ("R", np.nan), "c": ("c_stop", 0.0), "p": ("preload", 0.0)}
     return {
         "low": offset - b if stops != "right" else -np.inf,
         "high": offset + b if stops != "left" else np.inf,
         "middle": offset,
         **{f"{field}_low": low.number(*one) for field, one in fields.items()},
         **{f"{field}_high": high.number(*one) for field, one in fields.items()},
+        **{f"k_{name}": one.number("k_stop", -LEAST) + LEAST for name, one in (("low", low), ("high", high))},
         "by_force": release == "force" and COMPLIANT in (low.law, high.law),
     }
 

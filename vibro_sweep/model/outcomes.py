@@ -39,6 +39,11 @@ ORBITS = {  # `PeriodicOrbit.status`
         "an undamped mode repeats itself after the period: such orbits do not exist, or are not isolated",
         "Give the mode some damping, or change `omega` a little.",
     ),
+    "turning": Outcome(
+        "nothing holds the masses where the contact does not see them, as the angles of a drive: those have no period",
+        "`simulate` and `sweep` compute such motions; of a contact between masses the file has the `gap`, which may "
+        "have a period. A weak spring to the ground, far below all others, holds the masses.",
+    ),
     "too_stiff": Outcome(
         "the rates of the oscillator, or of a contact with its stop, are too far apart",
         "Leave out the fastest modes, or give them, or the stop, less damping: see `rates_too_far_apart` above.",
@@ -94,6 +99,11 @@ REASONS = {  # why a point of a sweep lies in no window; 0: it lies in one
     "unrelaxed": Outcome(
         "a stop is touched before it has relaxed from the contact before",
         "The sweep's own numbers are valid there; windows need stops that are at rest again at their next touch.",
+    ),
+    "turning": Outcome(
+        "nothing holds the masses where the contact does not see them, as the angles of a drive: those have no period",
+        "The sweep's own numbers are valid there; the `gap` may have a period. Windows need masses that something "
+        "holds, be it a weak spring.",
     ),
 }
 ATTRACTORS = ("chaos", "quasi_periodic", "sticking", "permanent_contact")  # reasons that say where an orbit went to

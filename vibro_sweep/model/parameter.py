@@ -54,6 +54,7 @@ class Parameter(NamedTuple):
     follows: str = ""  # the number whose value it has where it is left out
     each: str = ""  # of a list: what it has one number for, a key of `LENGTHS`
     optional: bool = False  # whether it may be left out although nothing is known of it then
+    instead: str = ""  # how a machine with a number below the range is written
 
     @property
     def described(self) -> str:

@@ -17,6 +17,8 @@ FREQUENCY = Parameter(
 CLEARANCE = Parameter(
     "b", "b", "m", Range("a number > 0; any number where there is one stop alone", {}), "clearance",
     "clearance on each side of the middle", "(4)",
+    instead="where two soft stops meet, describe the softer one as a spring of the machine, and what the other one has "
+    "more as a single stop (stops: right, b: 0)",
 )  # fmt: skip
 PHASE = Parameter(
     "tau", r"\tau", "rad", Range("a number (radians) or 'grazing'", {}), "forcing phase",
@@ -157,8 +159,9 @@ def check_value(parameter: Parameter, value: object, stops: str = "both", key: s
         raise ParameterError(key, value, allowed.text)
     good = allowed.holds(numbers)
     if not np.all(good):
-        wanted = allowed.text.replace("a number", "a finite number", 1)
-        raise ParameterError(key, numbers[~good].flat[0].item(), wanted)
+        wanted, bad = allowed.text.replace("a number", "a finite number", 1), numbers[~good].flat[0].item()
+        beyond = bad == 0 or (-np.inf < bad < 0 and allowed.holds(np.zeros(())))
+        raise ParameterError(key, bad, f"{wanted}; {parameter.instead}" if parameter.instead and beyond else wanted)
 
 
 def checked_number(parameter: Parameter, value: object, stops: str = "both", key: str | None = None) -> float:

@@ -12,6 +12,7 @@ NUMBERS = tuple(one.name for law in LAWS.values() for one in law.numbers_of_both
 RIGID_ALONE = (
     "with k_stop there are sweeps of the flow, `simulate`, `lyapunov`, periodic orbits, branches, curves and windows"
 )
+DAMPER_ALONE = "unless the stop is a damper alone, with c_stop > 0 and without a preload"
 NEEDS_IMPACTS = {  # what rigid stops have alone, and why
     "map": "the discontinuity mapping takes the place of impacts",
     "period map": "the derivatives of a period map are those of impacts",
@@ -101,6 +102,19 @@ def check_stops(given: Mapping[str, Any]) -> None:
             _refuse(given, of_left[1:], f"it belongs to a stop with {of_left[0]}")
         if stops == "right" and (law is not RIGID or right is not RIGID):
             _refuse(given, of_left, "there is no left stop")
+
+    for side in ("right", "left"):
+        _check_stiffness(given, side)
+
+
+def _check_stiffness(given: Mapping[str, Any], side: str) -> None:
+    """Raise ParameterError for a stop without stiffness that is no damper alone."""
+    key = COMPLIANT.names[side][0]
+    if given.get(key) != 0:
+        return
+    _, damping, preload = compliance_of(given, side)
+    if damping == 0 or preload > 0:
+        raise ParameterError(key, given[key], f"a number > 0 {DAMPER_ALONE}")
 
 
 def _refuse(given: Mapping[str, Any], names: tuple[str, ...], wrong: str) -> None:

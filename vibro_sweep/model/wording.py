@@ -60,3 +60,8 @@ def _brief(value: object, text=repr) -> str:
 def plain(value: object) -> object:
     """The value as it is given: lists in place of tuples, but of those with a text of their own."""
     return [plain(one) for one in value] if type(value) in (tuple, list) else value
+
+
+def without_rounding(value: float, spread: float) -> float:
+    """The value; 0 where it is that to rounding of values that lie so far apart."""
+    return value if abs(value) > 1e-12 * spread else 0.0

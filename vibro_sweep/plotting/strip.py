@@ -28,6 +28,7 @@ REASON_COLOURS = {
     "not_isolated": "#f0a030",
     "permanent_contact": "#7fae7f",
     "unrelaxed": "#c9a0dc",
+    "turning": "#5b8fb9",
 }
 
 

@@ -1,9 +1,14 @@
 """How the keys of a scene must fit each other: none contradicts another, none is without effect."""
 
+from collections.abc import Mapping
+
+import numpy as np
+
 from vibro_sweep.model.any_oscillator import AnyOscillator
+from vibro_sweep.model.contact_laws.compliant import LAW as COMPLIANT
 from vibro_sweep.model.exponents import LEAST_RECORD
 from vibro_sweep.model.observables import WORDS
-from vibro_sweep.model.stops import why_rigid
+from vibro_sweep.model.stops import DAMPER_ALONE, why_rigid
 
 from .fields import Form
 from .problems import problem
@@ -40,6 +45,18 @@ def _settle_problems(orbit: Form) -> list[str]:
     if orbit.record < LEAST_RECORD:
         text = f"must be at least {LEAST_RECORD} with `settle`: fewer section points do not tell what is under way"
         problems.append(problem("orbit.record", orbit.record, text))
+    return problems
+
+
+def stop_problems(sweep: Mapping[str, np.ndarray], system: AnyOscillator) -> list[str]:
+    """The problems of swept stiffnesses of stops: 0 is that of a damper alone."""
+    problems, numbers = [], system.numbers
+    for stiffness, *others in COMPLIANT.names.values():
+        if stiffness not in sweep or sweep[stiffness].min() != 0:
+            continue
+        damping, preload = (sweep.get(name, np.array(numbers.get(name) or 0.0)) for name in others)
+        if damping.min() == 0 or preload.max() > 0:
+            problems.append(problem(f"sweep.{stiffness}", 0, f"must be > 0 {DAMPER_ALONE}"))
     return problems
 
 

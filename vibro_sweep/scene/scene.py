@@ -19,7 +19,7 @@ from vibro_sweep.model.real import array_of
 from vibro_sweep.model.refusals import cut
 from vibro_sweep.model.state import START, start
 
-from .combinations import combination_problems
+from .combinations import combination_problems, stop_problems
 from .form import built_form, scene_form
 from .problems import SceneError, form_problems, located, problem
 from .size import size_problems
@@ -280,6 +280,7 @@ def scene_of(data: object, name: str, given: str | None = None, built: Built | N
     sweep, problems = sweep_of(form, data.get("sweep"), numbers)
     system, more = system_of(form, sweep, kind, masses) if built is None else (built, [])
     problems += more + start_problems(form, sweep, system, masses) + combination_problems(form, data, system)
+    problems += stop_problems(sweep, system) if system is not None else []
     if problems:
         raise SceneError(name, problems)
     trajectory = form.trajectory and Trajectory(form.trajectory.periods, form.trajectory.samples)

@@ -12,7 +12,7 @@ from vibro_sweep.analysis.periodic.from_itinerary import from_itinerary
 from vibro_sweep.analysis.periodic.from_state import from_guess, from_state
 from vibro_sweep.analysis.periodic.itinerary import SIDES, word
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
-from vibro_sweep.engine.impulses.free_modes import ResonanceError, TooStiffError
+from vibro_sweep.engine.impulses.free_modes import ResonanceError, TooStiffError, without_orbit
 from vibro_sweep.model.arguments import checked_count, checked_state
 from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.linear import family_of
@@ -66,7 +66,7 @@ def periodic_orbit(system, state=None, periods: int = 1, itinerary: str | None =
         else:
             found = from_itinerary(system, family, sides, periods)
     except ResonanceError:
-        return PeriodicOrbit(system, "resonance")
+        return PeriodicOrbit(system, without_orbit(family.linear))
     except TooStiffError:
         return PeriodicOrbit(system, "too_stiff")
     too_stiff = found.status == "not_converged" and presses_too_long(family.linear)

@@ -10,7 +10,7 @@ import numpy as np
 
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit, orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.engine.impulses.free_modes import ResonanceError, TooStiffError
+from vibro_sweep.engine.impulses.free_modes import ResonanceError, TooStiffError, without_orbit
 from vibro_sweep.model.arguments import check_type, checked_count
 from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.files import ExistingFileError, FileError, checked_path, file_to_write, read_bytes
@@ -107,7 +107,7 @@ def load_orbit(path: str | Path) -> PeriodicOrbit:
     try:
         return orbit_of(system, Solution(family, sigma, half_periods, sides, u, change, rests))
     except ResonanceError:
-        return PeriodicOrbit(system, "resonance")
+        return PeriodicOrbit(system, without_orbit(family.linear))
     except TooStiffError:
         return PeriodicOrbit(system, "too_stiff")
 

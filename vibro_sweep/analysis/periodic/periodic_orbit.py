@@ -17,7 +17,7 @@ from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.analysis.single.result import Result, event_table, shows_force
 from vibro_sweep.engine.impulses import flights
 from vibro_sweep.engine.impulses.flow import constrained_flow, contact_coordinates, contact_flow, flow
-from vibro_sweep.engine.impulses.free_modes import ResonanceError
+from vibro_sweep.engine.impulses.free_modes import ResonanceError, without_orbit
 from vibro_sweep.engine.one_system import CONTACT, IMPACT, STICKING, impact_of
 from vibro_sweep.model.arguments import LATEST, checked_times
 from vibro_sweep.model.errors import ArgumentError
@@ -302,7 +302,7 @@ def found_orbit(system, solution: Solution | None) -> PeriodicOrbit:
     if solution is None:
         return orbit_of(system, None)
     if leans(solution):
-        return PeriodicOrbit(system, "resonance")
+        return PeriodicOrbit(system, without_orbit(solution.family.linear))
     least = solution.reduced()
     same = (least.sigma, least.half_periods) == (solution.sigma, solution.half_periods)
     return orbit_of(system, solution if same else least)
@@ -313,7 +313,7 @@ def orbit_of(system, solution: Solution | None) -> PeriodicOrbit:
     if solution is None:
         return PeriodicOrbit(system, "not_converged")
     if solution.K == 0 and not is_isolated(solution):
-        return PeriodicOrbit(system, "resonance")
+        return PeriodicOrbit(system, without_orbit(solution.family.linear))
     status = "ok" if solution.real else "inadmissible" if solution.relaxes else "unrelaxed"
     return PeriodicOrbit(system, status, solution)
 

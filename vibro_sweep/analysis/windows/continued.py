@@ -8,7 +8,7 @@ from vibro_sweep.analysis.single.tables import table_of
 from vibro_sweep.analysis.windows.rows import REASON_CODES, Row, first_reason
 from vibro_sweep.engine import points
 from vibro_sweep.engine.halting import interruptible
-from vibro_sweep.engine.impulses.free_modes import has_free_gap
+from vibro_sweep.engine.impulses.free_modes import has_free_gap, turns
 from vibro_sweep.engine.one_system import plan_of
 from vibro_sweep.engine.records import new_results, starts_at
 from vibro_sweep.engine.simd.lanes import LANES
@@ -67,8 +67,11 @@ def _computed(row: Row, i: np.ndarray, begin: np.ndarray, transient: int) -> Con
     reasons = _reasons(found)
     touches = ("impacts_left", "impacts_right", "contacts_left", "contacts_right", "contact_time")
     free = ~np.any([found[name] > 0 for name in touches], axis=0)
-    for m in np.flatnonzero(free & (reasons == REASON_CODES["quasi_periodic"])):
-        if has_free_gap(family_of(row.system_at(row.values[i[m]])).linear):  # a mass that flies towards a stop
+    for m in np.flatnonzero(reasons == REASON_CODES["quasi_periodic"]):
+        q = family_of(row.system_at(row.values[i[m]])).linear
+        if turns(q):
+            reasons[m] = REASON_CODES["turning"]
+        elif free[m] and has_free_gap(q):  # a mass that flies towards a stop
             reasons[m] = REASON_CODES["not_settled"]
     return Continued(period, with_velocities(found["end"], kind.masses, rate), reasons)
 

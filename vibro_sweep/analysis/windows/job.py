@@ -19,6 +19,7 @@ NEAR = 1e-3  # of the size of the state: a recorded orbit that is farther from t
 WITHOUT = {  # statuses of orbits that have no window, and why
     "sticking": "sticking",
     "resonance": "not_isolated",
+    "turning": "turning",
     "permanent_contact": "permanent_contact",
     "unrelaxed": "unrelaxed",
 }

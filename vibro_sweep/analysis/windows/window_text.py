@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 from vibro_sweep.analysis.branches.branch_text import event
 from vibro_sweep.analysis.periodic.orbit_text import LINES, repr_text
-from vibro_sweep.model.wording import itinerary_text
+from vibro_sweep.model.wording import itinerary_text, without_rounding
 
 if TYPE_CHECKING:
     from vibro_sweep.analysis.windows.window import Window, Windows
@@ -33,4 +33,5 @@ def of_windows(windows: "Windows") -> str:
 
 def _window(window: "Window") -> str:
     kind = ", symmetric" if window.symmetric else ""
-    return f"{window.lo:.10g} .. {window.hi:.10g}: {itinerary_text(window.itinerary)}, period {window.period}{kind}"
+    lo, hi = (without_rounding(end, window.hi - window.lo) for end in (window.lo, window.hi))
+    return f"{lo:.10g} .. {hi:.10g}: {itinerary_text(window.itinerary)}, period {window.period}{kind}"

@@ -38,6 +38,16 @@ def free_modes(q: Linear) -> tuple[np.ndarray, np.ndarray]:
     return shapes, np.where(np.abs(seen) > 1e-13 * np.abs(q.normal) @ np.abs(shapes), seen, 0.0)
 
 
+def turns(q: Linear) -> bool:
+    """Whether masses may turn together, or move on: in a free mode that the contact does not see nothing holds them."""
+    return bool(np.any(free_modes(q)[1] == 0.0))
+
+
+def without_orbit(q: Linear) -> str:
+    """The status of an oscillator whose equations of a periodic orbit are singular."""
+    return "turning" if turns(q) else "resonance"
+
+
 def has_free_gap(q: Linear) -> bool:
     """Whether the contact sees a free mode."""
     return bool(np.any(free_modes(q)[1]))

@@ -1,13 +1,15 @@
 """The compliant stop: a spring and a damper side by side, without mass, which a preload may press together."""
 
 from vibro_sweep.model.contact_laws.contact_law import ContactLaw, Option
-from vibro_sweep.model.parameter import NOT_NEGATIVE, POSITIVE, Parameter, Range
+from vibro_sweep.model.parameter import NOT_NEGATIVE, Parameter, Range
 
 MODERATE = Range("a number from 0 to 1e100", {"minimum": 0, "maximum": 1e100})  # its square has to be a number
 
 STIFFNESS = Parameter(
-    "k_stop", r"k_{\mathrm{stop}}", "N m-1", POSITIVE, "stiffness of the stop",
-    "stiffness of a compliant stop, in place of R", optional=True,
+    "k_stop", r"k_{\mathrm{stop}}", "N m-1", NOT_NEGATIVE, "stiffness of the stop",
+    "stiffness of a compliant stop, in place of R; 0: a damper alone", optional=True,
+    instead="where a machine is softer beyond b, describe the softer side as the machine and the stiffer one as its "
+    "stop, mirrored",
 )  # fmt: skip
 DAMPING = Parameter(
     "c_stop", r"c_{\mathrm{stop}}", "N s m-1", NOT_NEGATIVE, "damping of the stop",

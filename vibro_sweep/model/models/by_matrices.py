@@ -10,6 +10,10 @@ from vibro_sweep.model.stacks import vector
 
 ROUNDING = 1e-12  # of a matrix, relative to its largest entry or eigenvalue
 SMALLEST = 1e-100  # of n of the gap n.x, and one over its largest
+KINETIC = (
+    "every motion must have kinetic energy; a coordinate without mass, as the charge of a circuit without inductance, "
+    "may have a small one"
+)
 DAMPING = ("C", "modal_damping", "rayleigh")  # ways to give it
 
 
@@ -63,7 +67,7 @@ def _check(given) -> None:
         if name != "contact_normal":
             _check_symmetric(name, np.array(given[name]))
     if np.linalg.eigvalsh(given["M"]).min() <= 0:
-        raise ParameterError("M", wording.plain(given["M"]), "positive definite: every motion must have kinetic energy")
+        raise ParameterError("M", wording.plain(given["M"]), f"positive definite: {KINETIC}")
     for name in ("K", "C"):
         if given[name] is not None:
             values = np.linalg.eigvalsh(given[name])
