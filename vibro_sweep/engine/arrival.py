@@ -28,8 +28,10 @@ ALIKE, SURELY = 1e-3, 30.0  # the same where nothing better is looked for, and o
 NEAR = 1e-2  # the last point, relative to its size, to the one a long period before
 BETTER = 0.3  # residual of a longer period, in that of a shorter one, with which it counts
 WORTH_A_LOOK, LOOKED_AT = 0.1, 4  # residual of so many of the last differences with which all are looked at
+LONG_LOOKS = 8  # at longer ones: where more of them are near, they are multiples of one that is none
 SHORT = 32  # period up to which all are looked at, as far as an eighth of the points
 LAST = 12  # differences at the end, at least, that are compared with rounding
+MOST_FITTED = 128  # points, the last ones: more of them tell no more
 LEAST_FITTED = 4  # points beyond three periods for a recurrence
 PARALLEL = 1e-10  # of two neighbouring differences: they are taken as parallel, and b as 0
 
@@ -112,6 +114,7 @@ def recurrence(section, scale, p, first):
 
     The residual has what rounding may hide in it: a drift has z = 1 but for that.
     """
+    first = max(first, len(section) - 3 * p - MOST_FITTED)
     s = sums(section, scale, p, first)
     if not (s.hh > 0.0 and s.aa > 0.0):
         return Recurrence(0.0, 0.0, 1.0, 0.0)
@@ -249,6 +252,21 @@ def is_worth_a_look(section, scale, p, long):
 
 
 @jit
+def arrives_at_the_end(last, scale, rounding, o, found):
+    """Whether the last points of a record have a period that all of them have not: then that is approached, and the
+    orbit is there."""
+    for p in range(1, len(last) // 2 + 1):
+        if repeats(last, scale, p, o):
+            look_at_repeating(last, scale, p, rounding, found)
+            period = found.period
+            nothing_known(found)
+            if period > 0:
+                found.approached_period, found.approached_distance = period, 0.0
+            return period > 0
+    return False
+
+
+@jit
 def look(section, o, scale, rounding, found):
     """Set of `found` the period of the points, (n, 2 N); or the period that they approach, how far it is to there, and
     by how much that shrinks in a forcing period; or none.
@@ -260,11 +278,16 @@ def look(section, o, scale, rounding, found):
         if repeats(section, scale, p, o):
             look_at_repeating(section, scale, p, rounding, found)
             return
-    best = Recurrence(0.0, 0.0, LIKE / BETTER, 0.0)
+    if arrives_at_the_end(section[-(len(section) // 4) :], scale, rounding, o, found):
+        return
+    best, left = Recurrence(0.0, 0.0, LIKE / BETTER, 0.0), LONG_LOOKS
     for p in range(1, (len(section) - LEAST_FITTED) // 3 + 1):
         long = p > min(SHORT, len(section) // 8)
         if not is_worth_a_look(section, scale, p, long):
             continue
+        left -= int(long)
+        if left < 0:
+            break
         r = recurrence(section, scale, p, 0 if long else second_half(section, p))
         if long and not goes_there(r, long):
             continue
@@ -284,16 +307,9 @@ def look(section, o, scale, rounding, found):
 
 
 @jit
-def is_under_way(section, o, scale, rounding, found):
+def is_under_way(found):
     """Whether an orbit without a period is still on its way to one: it approaches one; or it contracts, as lambda_1
-    says that is certainly below zero; or it has one in the end."""
+    says that is certainly below zero."""
     if found.period > 0 or found.approached_period > 0:
         return found.period == 0
-    if sign_of(found.lyapunov[0], found.lyapunov_error[0]) < 0:
-        return True
-    look(section[-(len(section) // 4) :], o, scale, rounding, found)
-    period = found.period
-    nothing_known(found)
-    if period > 0:
-        found.approached_period, found.approached_distance = period, 0.0
-    return period > 0
+    return sign_of(found.lyapunov[0], found.lyapunov_error[0]) < 0

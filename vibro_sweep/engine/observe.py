@@ -222,14 +222,12 @@ def close(e, w, plan, points, results, lanes):
         if o.status != status.NOT_COMPUTED:
             result.status = o.status
         if plan.states and o.status == status.OK:
-            states = w.section[i]
-            set_scale(w.state[: states.shape[1]], o.largest, period_of(e, o))
-            under_way = is_under_way(states, o, w.state, rounding_of(o, plan), result)
+            under_way = is_under_way(result)
             if under_way and plan.record >= LEAST_RECORD:
                 result.status = status.NOT_SETTLED
             if plan.attractors and not under_way:
                 right, left = touches_of(e.law, o, result)
-                keep_averages(states, period_of(e, o), REPEAT, right, left, o, result)
+                keep_averages(w.section[i], period_of(e, o), REPEAT, right, left, o, result)
         before = result.transient_periods + plan.record if result.transient_periods >= 0 else 0
         result.transient_periods = before + result.more
         result.more = periods_more(plan, result)
@@ -246,6 +244,8 @@ def periods_more(plan, result):
     if result.status != status.NOT_SETTLED or plan.settle <= so_far + plan.warm_up:
         return 0
     more = periods_to_go(result.approached_distance, result.approached_factor, 0.5 * REPEAT)
+    if result.approached_distance == 0.0:  # it has arrived in the record
+        more = 0.0
     more = min(more, float(so_far)) if more >= 0.0 else float(so_far)
     return int(min(max(more, 1.0 + plan.warm_up), plan.settle - so_far))
 

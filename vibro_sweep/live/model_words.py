@@ -20,6 +20,7 @@ from vibro_sweep.scene import Scene
 
 DECADE = 10.0
 LARGEST = sys.float_info.max
+STIFFNESSES = {names[0] for names in COMPLIANT.names.values()}  # of stops: over decades, though one may be 0
 _GREEK = {
     r"\mu": "μ", r"\zeta": "ζ", r"\omega": "ω", r"\tau": "τ", r"\epsilon": "ε", r"\bar f": "f̄", r"\tilde f": "f̃",
 }  # fmt: skip
@@ -63,7 +64,7 @@ def _value(system: AnyOscillator, view: View, one: Parameter) -> Any:
 def _slider(one: Parameter, value: float, view: View, stops: str) -> dict[str, Any]:
     """A number and the range of its slider: where its values can be at all, around the one that it has."""
     allowed = range_of(one, stops)
-    logarithmic = allowed.bounds == POSITIVE.bounds
+    logarithmic = allowed.bounds == POSITIVE.bounds or (one.name in STIFFNESSES and value > 0)
     bounds = allowed.bounds
     if "maximum" in bounds:
         low, high = bounds["minimum"], bounds["maximum"]

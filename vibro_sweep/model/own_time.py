@@ -4,6 +4,7 @@ The unit is 1/rate, with the power of two nearest to omega for the rate: changin
 powers of a rate stay within the range of the floats. What is computed is scaled back by the unit that it declares.
 """
 
+import functools
 import math
 
 import numpy as np
@@ -43,12 +44,23 @@ def as_lengths(states: np.ndarray, omega: float) -> np.ndarray:
 
 
 def in_users_time(named: dict[str, np.ndarray], masses: int, rate: float) -> dict[str, np.ndarray]:
-    """Arrays of a file, by the names of its variables, in the user's unit of time again."""
-    known = (*variables(masses, True), *variables(masses, False))  # whether or not the gap is x1
-    powers = {one.name: -power_of_seconds(one.units) for one in known}
-    scaled = {name: values * rate ** powers[name] if powers.get(name) else values for name, values in named.items()}
+    """Arrays of a file, by the names of its variables, in the user's unit of time again; in their place."""
+    if rate == 1.0:
+        return named
+    for name, values in named.items():
+        if power := _powers(masses).get(name):
+            values *= rate**power
     if "end" in named:
-        scaled["end"] = with_velocities(named["end"], masses, rate)
+        named["end"][..., 1 : 2 * masses : 2] *= rate
     factors = np.ones(2 * masses + 3)  # of averages: section points, counts, lambda_1
     factors[1 : 2 * masses : 2] = factors[-1] = rate
-    return scaled | {name: scaled[name] * factors for name in ("average", "average_error") if name in scaled}
+    for name in named.keys() & {"average", "average_error"}:
+        named[name] *= factors
+    return named
+
+
+@functools.cache
+def _powers(masses: int) -> dict[str, int]:
+    """Of the variables that have a time in their unit: the power of the rate by which they are scaled."""
+    known = (*variables(masses, True), *variables(masses, False))  # whether or not the gap is x1
+    return {one.name: -power for one in known if (power := power_of_seconds(one.units))}
