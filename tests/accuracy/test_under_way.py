@@ -112,8 +112,7 @@ def concluded(system: vs.Oscillator, time: float, length: float):
 
 @pytest.mark.parametrize("seed", [*range(3), *slow_cases(*range(3, 100))])
 def test_units_change_nothing(seed):
-    """Section points are compared where numbers are not rounded in another way; orbits in units down to a microsecond:
-    in a picosecond rounding decides which one of several is found first."""
+    """Section points are compared where numbers are not rounded in another way."""
     was, numbers, orbit = concluded(drawn(np.random.default_rng(seed)), 1.0, 1.0)
     for time, length, mass in UNITS:
         now = concluded(drawn(np.random.default_rng(seed), time, length, mass), time, length)
@@ -121,8 +120,6 @@ def test_units_change_nothing(seed):
         if length == 1:  # else chaos is another one
             for one, other in zip(now[1], numbers, strict=True):
                 assert np.allclose(one, other, rtol=1e-6, atol=1e-9, equal_nan=True)
-        if time < 1e-7:
-            continue
         assert now[2].status == orbit.status
         assert not orbit.ok or np.allclose(now[2].state[::2] / length, orbit.state[::2], rtol=1e-9)
 

@@ -98,7 +98,7 @@ class Solution:
 
     @cached_property
     def hold(self) -> float:
-        """The least free acceleration into the stop during the rests; inf without a rest."""
+        """The least free acceleration into the stop during the rests, over omega^2; inf without a rest."""
         return self._certificate[1]
 
     @cached_property
@@ -189,7 +189,7 @@ class Solution:
         rounding = 1e-13 * self.size_of_gap
         speed = self.family.linear.omega * rounding
         q = self.family.linear
-        sticks = self.hold > -q.omega * speed and np.all(self.ends >= self.times[list(self.rests)])
+        sticks = self.hold > -rounding and np.all(self.ends >= self.times[list(self.rests)])
         sticks = sticks and np.all(one_plus_R(q, np.array(self.sides)[list(self.rests)]) == 1)
         return bool(np.all(self.pushes > -speed) and self.stop_distance > -rounding and sticks and self.relaxes)
 
