@@ -22,9 +22,10 @@ def test_without_a_name_it_is_the_one_of_the_readme(folder, capsys):
     assert main(["new"]) == 0
     assert capsys.readouterr().out.splitlines() == ["quickstart.yaml", "scene.schema.json"]
     assert vs.load_scene("quickstart.yaml").to_yaml() == vs.load_scene(ROOT / "configs/quickstart.yaml").to_yaml()
-    schema = ROOT / "configs" / "scene.schema.json"
-    assert Path("scene.schema.json").read_bytes() == schema.read_bytes()
     assert main(["check", "quickstart.yaml"]) == 0
+    capsys.readouterr()
+    assert main(["schema"]) == 0
+    assert Path("scene.schema.json").read_text() == capsys.readouterr().out
 
 
 EXAMPLES = sorted((ROOT / "configs").glob("**/*.yaml"))

@@ -284,11 +284,9 @@ def new(
 @app.command()
 def schema():
     """Print the JSON Schema of a scene, for editors."""
-    import json
+    from .examples import schema_text
 
-    from vibro_sweep.scene import json_schema
-
-    say(json.dumps(json_schema(), indent=2))
+    say(schema_text())
 
 
 @app.command("explore")

@@ -1,6 +1,7 @@
 """Example scenes, which come with the package, and copies of them to start from."""
 
 import difflib
+import json
 import re
 from pathlib import Path
 
@@ -30,7 +31,7 @@ def purpose(scene: Path) -> str:
 
 
 def write_example(name: str) -> list[Path]:
-    """Copy a scene into the current folder, and the schema if there is none; the paths. Raises ExampleError."""
+    """Copy a scene into the current folder, with the schema if there is none; the paths. Raises ExampleError."""
     known = examples()
     name = name.removesuffix(".yaml")
     if name not in known:
@@ -50,6 +51,12 @@ def write_example(name: str) -> list[Path]:
     schema = Path(SCHEMA)
     if schema.exists():
         return [scene]
-    folder = next(path for path in known[name].parents if (path / SCHEMA).exists())
-    schema.write_bytes((folder / SCHEMA).read_bytes())
+    schema.write_text(schema_text() + "\n", encoding="utf-8")
     return [scene, schema]
+
+
+def schema_text() -> str:
+    """The JSON Schema of a scene."""
+    from vibro_sweep.scene import json_schema
+
+    return json.dumps(json_schema(), indent=2)
