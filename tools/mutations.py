@@ -1,6 +1,6 @@
 """Lines of ROOMS, drawn by a seed, are changed one at a time: the first test that fails with each.
 
-python benchmarks/mutations.py --work FOLDER [--lines 60] [--seed 28] [--only 3 17] [--log FILE]
+python tools/mutations.py --work FOLDER [--lines 60] [--seed 28] [--only 3 17] [--log FILE]
 
 FOLDER gets a copy of the checkout, its compiled kernels, and what each test calls: all tests are run
 once for that. Then tests run in order of nearness to the changed line, until one fails; one that does not end fails,
@@ -23,7 +23,7 @@ import tokenize
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-RUN = str(ROOT / "benchmarks" / "chosen_tests.py")
+RUN = str(ROOT / "tools" / "chosen_tests.py")
 ROOMS = ("analysis", "driver", "engine", "model")  # of the package
 FIRST = 40  # tests that are collected first
 CHANGES = {
