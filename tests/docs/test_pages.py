@@ -27,7 +27,6 @@ PAGES = {
 SLOW = (
     "README.md",
     "docs/how/cluster.md",
-    "docs/how/explore.md",
     "docs/development/architecture.md",
 )
 ENDING = "for job in $(jobs -p | tac); do kill $job; wait $job || true; done"  # a worker waits 8 s for its scheduler
