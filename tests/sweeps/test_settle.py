@@ -69,6 +69,17 @@ def test_others_have_the_bits_that_they_have_without(observe):
         assert plain[name].values[~went_on].tobytes() == more[name].values[~went_on].tobytes(), name
 
 
+def test_a_section_of_impacts_has_those_of_the_last_record():
+    """Of a resonator that is set free against its stop, and strikes it no more once it has arrived."""
+    system = vs.Oscillator.named("one_mass", k=1.0, zeta=0.005, F=0.01, omega=1.0, R=0.9, b=1.3, stops="right", tau=0.0)
+    more = {"start": {"x1": -3.0}, "section": {"kind": "impact", "stop": "right"}, "observe": ("section", "impacts")}
+    first = settled(system, {"b": [1.3]}, transient=0, **more)
+    assert first.status.item() == NOT_SETTLED and first.impacts_right.item() == np.isfinite(first.x1).sum() > 5
+    data = settled(system, {"b": [1.3]}, 10**5, transient=0, **more)
+    assert data.period.item() == 1 and data.impacts_right.item() == np.isfinite(data.x1).sum() == 0
+    assert np.isnan(data.phase).all()
+
+
 def test_it_is_in_the_file_only_where_it_is_asked_for():
     system = resonator(400)
     assert "transient_periods" not in settled(system, {"b": [1.1]})

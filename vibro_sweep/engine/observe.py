@@ -261,3 +261,7 @@ def keep_impacts(e, o, point, section, phase, other):
             section[n, j] = row[3 + j]
         to_masses(point, section[n], other)
         phase[n] = point.omega * (row[1] * width + row[2])
+    for n in range(min(o.impacts_logged, len(phase)), len(phase)):  # of an earlier record of an orbit that went on
+        phase[n] = np.nan
+        for j in range(section.shape[1]):
+            section[n, j] = np.nan
