@@ -4,15 +4,12 @@ Every notebook page and every picture of the gallery is computed at each build; 
 """
 
 import sys
-import tempfile
 from functools import partialmethod
 from pathlib import Path
 
 from nbclient import NotebookClient
 
 sys.path.append(str(Path(__file__).parent / "_extensions"))
-
-import inventories
 
 from vibro_sweep import __version__
 
@@ -26,7 +23,6 @@ extensions = [
     "sphinx.ext.autodoc",
     "sphinx.ext.autosummary",
     "sphinx.ext.duration",
-    "sphinx.ext.intersphinx",
     "sphinx_copybutton",
     "sphinx_design",
     "sphinx_gallery.gen_gallery",
@@ -42,7 +38,6 @@ default_role = "py:obj"
 autodoc_typehints_format = "short"
 python_use_unqualified_type_names = True
 maximum_signature_line_length = 100
-intersphinx_mapping = inventories.mapping(Path(tempfile.mkdtemp()))
 
 myst_enable_extensions = ["amsmath", "attrs_inline", "colon_fence", "deflist", "dollarmath", "html_image"]
 myst_heading_anchors = 4
