@@ -19,7 +19,7 @@ SYSTEM = f"system: {{{PAPER_NUMBERS}, b: 6.6}}"
 SCHEMA = json.loads(ended("schema").out)
 SYSTEM_FORM = SCHEMA["definitions"]["SystemForm"]
 WORDS = ("stops", "release", "units", "type")  # of a system; its other keys are numbers
-SOFT = {name: number for name, number in NUMBERS.items() if name != "R"} | {"k_stop": 100, "tau": 0}
+SOFT = {name: number for name, number in NUMBERS.items() if name != "R"} | {"k_stop": 100, "c_stop": 1, "tau": 0}
 BASE = f"{SYSTEM}\norbit: {{transient: 10, record: 4}}\n"
 
 
