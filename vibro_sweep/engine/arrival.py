@@ -31,7 +31,7 @@ WORTH_A_LOOK, LOOKED_AT = 0.1, 4  # residual of so many of the last differences 
 LONG_LOOKS = 8  # at longer ones: where more of them are near, they are multiples of one that is none
 SHORT = 32  # period up to which all are looked at, as far as an eighth of the points
 LAST = 12  # differences at the end, at least, that are compared with rounding
-MOST_FITTED = 128  # points, the last ones: more of them tell no more
+MOST_FITTED = 512  # points, the last ones: fewer do not tell a torus from a spiral, more of them tell no more
 LEAST_FITTED = 4  # points beyond three periods for a recurrence
 PARALLEL = 1e-10  # of two neighbouring differences: they are taken as parallel, and b as 0
 
