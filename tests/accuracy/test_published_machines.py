@@ -59,6 +59,15 @@ def test_info_says_of_a_drive_why_it_has_no_period(tmp_path):
     assert "turning      2 orbits: nothing holds the masses" in ended("info", path).out
 
 
+def test_info_of_drives_that_a_function_makes(tmp_path):
+    """No text says what the function does: `info` says nothing of their turning, and nothing is called damaged."""
+    path = tmp_path / "made.h5"
+    made = lambda b: vs.Oscillator(**DRIVE | {"b": b}, constant=[0.5, 0])  # noqa: E731
+    vs.sweep(made, {"b": [0.2, 0.21]}, transient=300, record=60, output=path)
+    end = ended("info", path)
+    assert end.status == 0 and "turning" not in end.out and "damaged" not in end.out
+
+
 def test_a_tapping_cantilever():
     """300 kHz, Q = 400, in SI: its orbit with one contact, and, at 22 nm, the motion that touches nothing."""
     near = vs.Oscillator.named("chain", **TAPPING, b=1e-8, tau=0.0)

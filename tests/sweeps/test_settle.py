@@ -94,18 +94,23 @@ def test_the_same_bits_of_any_machine(seeds):
     assert wrong == [] and counted["killed"] > counted["scenes"] / 2 and counted["went_on"] > 0
 
 
-@pytest.mark.parametrize("seed", sample(3, range(40)))
-def test_within_twice_what_it_needs(seed):
-    """The least plain transient with which an orbit has arrived, by bisection."""
-    system, _ = drawn_compliant(seed)
-    record = 100
-    data = settled(system, {"b": [system.b]}, 10**5, transient=50, record=record)
-    took = data.transient_periods.item()
-    if data.status.item() != 0 or data.period.item() == 0 or took == 50:
-        return
+@pytest.mark.parametrize("seeds", [range(6), *slow_cases(range(6, 60))], ids=len)
+def test_within_twice_what_it_needs(seeds):
+    """With half of the periods, those of the record among them, orbits that went on had not arrived."""
+    record, compared = 100, 0
+    for seed in seeds:
+        system, _ = drawn_compliant(seed)
+        data = settled(system, {"b": [system.b]}, 10**5, transient=50, record=record)
+        took = data.transient_periods.item()
+        if data.status.item() == 0 and data.period.item() > 0 and took > 50:
+            half = settled(system, {"b": [system.b]}, transient=(took + record) // 2 - record - 1, record=record)
+            assert half.status.item() == NOT_SETTLED or half.period.item() == 0, seed
+            compared += 1
+    assert compared > len(seeds) / 5
 
-    def arrived(transient):
-        plain = settled(system, {"b": [system.b]}, transient=transient, record=record)
-        return plain.status.item() == 0 and plain.period.item() > 0
 
-    assert not arrived(int((took + record) / 2) - record - 1)
+def test_what_fails_has_no_length_of_its_transient():
+    system = vs.System(mu_m=1, mu_k=1, zeta=0.05, f2=0, omega=0.6, R=0.9999, b=1e-6, tau=0)
+    data = settled(system, {"omega": [1e-9, 0.6]}, 1000)
+    failed = ~np.isin(data.status.values, (0, NOT_SETTLED))
+    assert failed.any() and (data.transient_periods.values[failed] == -1).all()

@@ -15,7 +15,6 @@ from vibro_sweep.model.exponents import CERTAIN, periods_to_go, sign_of
 from vibro_sweep.model.observables import GAP
 from vibro_sweep.model.outcomes import REASONS
 from vibro_sweep.model.status import NOT_COMPUTED, NOT_SETTLED, STATUSES, VALID, meaning
-from vibro_sweep.scene.scene import parse_scene
 from vibro_sweep.store import checks
 from vibro_sweep.store.attributes import is_flat, quantities_of, text, texts
 from vibro_sweep.store.opening import REMEDY, ForeignError, StoreError, opened
@@ -161,11 +160,15 @@ def _turning(file: h5py.File) -> list[str]:
     if not {GAP, "period"} <= set(quantities_of(file)):
         return []
     without = sum(int((periods == 0).sum()) for _, periods in checks.readable(file["period"]))
-    from vibro_sweep.engine.impulses.free_modes import turns  # the engine takes a second to be imported
-
-    if not without or not turns(parse_scene(text(file, "scene")).system.linear):
+    if not without:
         return []
-    return [f"turning      {without:,} orbits: {REASONS['turning'].text}"]
+    from vibro_sweep.engine.impulses.free_modes import turns  # these two take a second to be imported
+    from vibro_sweep.scene.scene import parse_scene
+
+    with contextlib.suppress(ValueError):  # there is no text of what a function made
+        if turns(parse_scene(text(file, "scene")).system.linear):
+            return [f"turning      {without:,} orbits: {REASONS['turning'].text}"]
+    return []
 
 
 def _exponents(file: h5py.File) -> list[str]:

@@ -24,7 +24,7 @@ def energies_of(block: Block, steps: np.ndarray, kind: Kind, results: np.ndarray
     systems = steps.reshape(-1)
     begins, resting, relaxed = (
         np.ascontiguousarray(results[name].reshape(len(systems), *results[name].shape[2:]))
-        for name in ("begin", "resting_first", "relaxed_first")
+        for name in ("begin", "begin_resting", "begin_relaxed")
     )
     begins = at_contact(systems, begins, resting)
     outcome = np.where(status.is_valid(results["status"]), status.NOT_COMPUTED, results["status"]).reshape(-1)

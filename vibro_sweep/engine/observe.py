@@ -1,7 +1,8 @@
 """What a scene observes of orbits: section points, their period, impacts, exponents.
 
 An orbit goes through phases: its transient, at the end of which tangent vectors warm up; the record; and, if it turns
-out to be periodic and exponents are wanted, three times one more period, the last of them beside the orbit.
+out to be periodic and exponents are wanted, three times one more period, the last of them beside the orbit. One that
+its record shows to be under way may go through all of them again, from where the record ended (`settle`).
 """
 
 import numpy as np
@@ -93,7 +94,7 @@ def keep_begin(e, w, point, result, o):
     for j in range(len(result.begin)):
         result.begin[j] = o.X[j]
     to_masses(point, result.begin[:], w.other)
-    result.resting_first = o.resting
+    result.begin_resting = o.resting
     keep_places(e.law, o, result, e.flights.oscillator[o.table, 0].width)
 
 
@@ -102,7 +103,7 @@ def keep_places(law, o, result, width):
     """Keep where stops are that relax."""
     if law is not None:
         for n in range(2):
-            result.relaxed_first[n] = place_at(law.orbits[o.lane], o, n, 0, 0.0, width)
+            result.begin_relaxed[n] = place_at(law.orbits[o.lane], o, n, 0, 0.0, width)
 
 
 @inline
@@ -228,8 +229,9 @@ def close(e, w, plan, points, results, lanes):
             if plan.attractors and not under_way:
                 right, left = touches_of(e.law, o, result)
                 keep_averages(w.section[i], period_of(e, o), REPEAT, right, left, o, result)
-        before = result.transient_periods + plan.record if result.transient_periods >= 0 else 0
-        result.transient_periods = before + result.more
+        if o.status == status.OK:
+            before = result.transient_periods + plan.record if result.transient_periods >= 0 else 0
+            result.transient_periods = before + result.more
         result.more = periods_more(plan, result)
 
 

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.engine.compliant.law import bring_relaxing, keep_between, relax_from, set_law
+from vibro_sweep.engine.compliant.law import keep_between, relax_from, set_law
 from vibro_sweep.engine.motion import strike
 from vibro_sweep.engine.motion.ensemble import carry
 from vibro_sweep.engine.motion.orbits import Stops, new_records, set_state
@@ -157,17 +157,15 @@ def set_orbits(points, starts, results, n, lanes, w, plan):
         result.more = result.more if result.more > 0 else plan.transient
         for j in range(len(state)):
             state[j] = results[before, k].end[j] if goes_on else start[j]
+        phase = points[before, k].tau if goes_on else start[len(state) + 2]
+        cell, offset = place_of(phase, point.tau, e.flights.oscillator[o.table, 0]) if plan.order == 0 else (0, 0.0)
         if goes_on:
-            relax_from(e.law, i, results[before, k].relaxed)
-            phase = points[before, k].tau
+            relax_from(e.law, i, results[before, k].relaxed, cell, offset)
         else:
-            relax_from(e.law, i, start[len(state) : len(state) + 2])
-            phase = start[len(state) + 2]
+            relax_from(e.law, i, start[len(state) : len(state) + 2], cell, offset)
         to_contact(point, state, stops, w.other)
         if plan.order == 0:  # points of the map may lie beyond the stops
             keep_between(e.law, i, state, stops)
-        cell, offset = place_of(phase, point.tau, e.flights.oscillator[o.table, 0]) if plan.order == 0 else (0, 0.0)
-        bring_relaxing(e.law, i, cell, offset)
         set_state(o, e.flights.nodes[o.table], stops, cell, offset, state)
 
 

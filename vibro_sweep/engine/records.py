@@ -101,8 +101,8 @@ def result_of(masses: int) -> np.dtype:
             ("resting", float),  # the side of the stop that M1 rests on there, or 0
             ("relaxed", float, 2),  # where compliant stops are that relax
             ("begin", float, (2 * masses,)),  # as `end`, `resting` and `relaxed`, at the first section of the record,
-            ("resting_first", float),  # where the energy is observed
-            ("relaxed_first", float, 2),
+            ("begin_resting", float),  # where the energy is observed
+            ("begin_relaxed", float, 2),
             ("more", np.int64),  # forcing periods over which it is carried before its record; 0: it has not begun
         ]
     )

@@ -111,7 +111,7 @@ def keep_fastest(hits, impacts, q, stops):
 def hold(law, o, relaxed):
     """Where compliant stops are at the section; a mass inside one is in contact, which its state says."""
     if law is not None:
-        relax_from(law, 0, relaxed)
+        relax_from(law, 0, relaxed, 0, 0.0)
         if o.resting != 0.0 and law.orbits[0].compliant[lane_of(o.resting)]:
             o.resting = 0.0
 

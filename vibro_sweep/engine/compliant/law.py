@@ -169,22 +169,13 @@ def fill_equations(G, point, side, n):
 
 
 @inline
-def relax_from(law, i, places):
-    """None of the stops of orbit i is pressed; from these places, at the beginning of a period, they relax."""
+def relax_from(law, i, places, cell, offset):
+    """None of the stops of orbit i is pressed; from these places, at this offset of this cell, they relax."""
     if law is not None:
         contact = law.orbits[i]
         contact.pressed = 0.0
         for n in range(2):
             contact.relaxed[n] = contact.left[n] = places[n]
-            contact.cell[n], contact.offset[n] = 0, 0.0
-
-
-@inline
-def bring_relaxing(law, i, cell, offset):
-    """Stops that relax are where they are at this offset of this cell, not at the beginning of the period."""
-    if law is not None:
-        contact = law.orbits[i]
-        for n in range(2):
             contact.cell[n], contact.offset[n] = cell, offset
 
 
