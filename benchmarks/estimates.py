@@ -26,7 +26,7 @@ CHAIN = (
     "omega: 1, R: 0.8, b: 1}\n"
 )
 FROM_FILES = (
-    "quickstart", "paper_clearance", "basins", "coexistence", "hysteresis", "plane_clearance_frequency",
+    "quickstart", "basins", "coexistence", "hysteresis", "plane_clearance_frequency",
     "models/bouncing_ball", "models/ball_in_cavity", "models/chain", "paper/figure_06",
 )  # fmt: skip
 WRITTEN = {

@@ -52,7 +52,7 @@ def test_simulate(benchmark):
 
 
 def test_sweep(benchmark):
-    """201 clearances from 6.5 to 6.9, 300 periods, everything observed: a tenth of configs/paper_clearance.yaml."""
+    """201 clearances from 6.5 to 6.9, 300 periods, everything observed."""
     params = problem.on_attractor(3.0)[0]
     key = "sweep: {b: {start: 6.5, stop: 6.9, num: 201}}"
     block = block_of(scene_text(params, (0.0,) * 4, "section, lyapunov, impacts", key, transient=200, record=100))

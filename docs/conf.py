@@ -70,9 +70,11 @@ html_title = "vibro_sweep"
 html_static_path = ["_static"]
 html_css_files = ["site.css"]
 html_show_sourcelink = False
+html_sidebars = {"**": ["map"]}
 html_theme_options = {
     "github_url": "https://github.com/vibro-sweep/vibro_sweep",
     "show_toc_level": 2,
+    "navbar_center": [],  # the map is beside each page
     "article_header_end": ["download_notebook"],
     "navigation_with_keys": False,
     "footer_start": ["copyright"],

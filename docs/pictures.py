@@ -1,6 +1,7 @@
-"""Make the pictures that README.md shows: python docs/pictures.py
+"""Make docs/quickstart.png and docs/film.gif: python docs/pictures.py
 
-All other pictures of the documentation are made when the site is built.
+docs/oscillator.svg is written by hand, docs/live_pictures.py makes those of the live page; the build of the site
+makes all others.
 """
 
 import subprocess
@@ -12,7 +13,6 @@ import vibro_sweep as vs
 
 DOCS = Path(__file__).resolve().parent
 SCENE = DOCS.parent / "configs" / "quickstart.yaml"
-PICTURES = ("quickstart.png", "film.gif", "oscillator.svg")
 
 
 def quickstart(picture: Path) -> None:
@@ -34,4 +34,3 @@ def film(picture: Path) -> None:
 if __name__ == "__main__":
     quickstart(DOCS / "quickstart.png")
     film(DOCS / "film.gif")
-    subprocess.run([sys.executable, "docs/oscillator.py"], cwd=DOCS.parent, check=True)

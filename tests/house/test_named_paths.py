@@ -18,10 +18,9 @@ def missing(text: str) -> list[str]:
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda path: path.relative_to(ROOT).as_posix())
 def test_files_that_a_page_names_are_there(page):
-    if "changes_in" not in page.name:  # what was there in its time
-        assert missing(page.read_text()) == []
+    assert missing(page.read_text()) == []
 
 
 def test_a_file_that_is_not_there_is_seen():
-    assert len(PAGES) > 40
+    assert len(PAGES) > 30
     assert missing("`tests/conftest.py`, `engine/simd/jit.py`, `tests/nothing.py`") == ["tests/nothing.py"]

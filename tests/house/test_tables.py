@@ -1,6 +1,7 @@
 """The tables inside the package: what is declared in one place, and what is made of it elsewhere in the package."""
 
 import ast
+import runpy
 
 import numpy as np
 import pytest
@@ -8,7 +9,6 @@ from support import ROOT
 from support.scene_texts import parsed
 
 import vibro_sweep as vs
-from vibro_sweep.cli import reference
 from vibro_sweep.driver.blocks import plan_of
 from vibro_sweep.engine.records import POINT, new_results, result_of
 from vibro_sweep.engine.simd.jit import ENGINE, SHARED
@@ -35,8 +35,9 @@ def test_records_of_the_kernels_have_the_types_of_files():
 
 
 def test_reference_pages_are_up_to_date():
-    old = [name for name, text in reference.pages(ROOT).items() if (ROOT / "docs/reference" / name).read_text() != text]
-    assert old == [], "python -m vibro_sweep.cli.reference docs/reference"
+    pages = runpy.run_path(str(ROOT / "docs/reference_pages.py"))["pages"]()
+    old = [name for name, text in pages.items() if (ROOT / "docs/reference" / name).read_text() != text]
+    assert old == [], "python docs/reference_pages.py docs/reference"
 
 
 @pytest.mark.parametrize("word, needed", NEEDS.items())

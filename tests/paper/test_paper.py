@@ -18,7 +18,7 @@ def test_scenes_are_the_papers(path):
     system = scene.system
     numbers = (system.mu_m, system.mu_k, system.zeta, system.f2, system.omega, system.R)
     assert numbers == (10, 5, 0.05, 0, 0.63, 0.8)
-    assert scene.dynamics == ("map" if path.stem[:9] in ("figure_06", "figure_07", "figure_08") else "flow")
+    assert scene.dynamics == ("map" if path.stem in ("figure_06", "figure_07", "figure_08") else "flow")
     if scene.dynamics == "map" or path.stem < "figure_05":  # these start at the grazing point
         point = (scene.expand_at or grazing(system).b, *grazing(system).state[1:])
         assert scene.start.state == pytest.approx(point, abs=1e-14)

@@ -21,7 +21,6 @@ FIGURES = {  # scene: the kind of picture that the paper shows, and what else is
     "figure_03": ["history"],
     "figure_04": ["configuration"],
     "figure_06": ["bifurcation"],
-    "figure_06_printed": ["bifurcation"],
     "figure_07": ["iteration", "convergence"],
     "figure_08": ["iteration", "convergence"],
     "figure_09": ["phase-portrait"],

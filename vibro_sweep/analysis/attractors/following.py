@@ -6,7 +6,7 @@ attractors that were lost before; an attractor that is not one of these either g
 
 Periodic attractors can be the same only with the same impacts in a forcing period on each stop, so a number goes on
 through period doublings and ends at a graze or in chaos. What that means for splits and births is said in
-docs/reference/files.md.
+docs/reference/files_and_limits.md.
 """
 
 from typing import NamedTuple

@@ -1,1 +1,0 @@
-"""Pages of docs/reference/ that are made from the declarations, one module for each."""
