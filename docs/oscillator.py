@@ -1,4 +1,4 @@
-"""Draw docs/oscillator.svg, the sketch in README.md and docs/model.md: `python docs/oscillator.py`."""
+"""Draw docs/oscillator.svg, the sketch in README.md and docs/how/models.md: `python docs/oscillator.py`."""
 
 from pathlib import Path
 
