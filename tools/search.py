@@ -3,7 +3,7 @@
     PYTHONPATH=tests python -m tools.search KIND FROM TO [--workers N]
 
 prints what is wrong of the seeds FROM ... TO - 1, and what was counted. What such searches have found is in
-docs/validation/; a sample of each is a slow test.
+docs/evidence.md; a sample of each is a slow test.
 """
 
 import argparse

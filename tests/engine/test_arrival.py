@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import vibro_sweep as vs
-from vibro_sweep.engine import arrival
+from vibro_sweep.engine import arrival, two_modes
 from vibro_sweep.engine.simd.jit import exported
 
 NUMBERS = 4
@@ -24,7 +24,7 @@ def looked_at(points: np.ndarray) -> np.void:
     """What is found of section points (n, 4)."""
     found, scale = np.zeros(1, FOUND), np.empty(NUMBERS)
     set_scale(scale, np.abs(points).max(axis=0), 2 * np.pi)
-    look(points, Orbit(np.zeros((NUMBERS // 2, 1))), scale, arrival.ROUNDING, found[0])
+    look(points, Orbit(np.zeros((NUMBERS // 2, 1))), scale, arrival.ROUNDING, two_modes.new_fit(), found[0])
     return found[0]
 
 
@@ -68,6 +68,28 @@ def test_how_far_it_is_and_how_fast_it_goes(period):
         assert (found["period"], found["approached_period"]) == (0, period)
         assert abs(found["approached_factor"] ** period - radius) < 1e-6
         assert abs(found["approached_distance"] / left - 1) < 1e-3
+
+
+@pytest.mark.parametrize("period", [1, 2, 3])
+def test_two_modes_at_once(period):
+    """Two pairs of multipliers, of which neither has died out: 300 orbits of each period, all on their way."""
+    rng, seen = np.random.default_rng(period), 0
+    for _ in range(300):
+        orbit, count = rng.normal(size=(period, NUMBERS)), int(rng.integers(60, 200))
+        radii, angles = 1 - 10 ** rng.uniform(-4, -2, 2), rng.uniform([0.2, 1.6], [1.4, 3.0])
+        n, points = np.arange(count), orbit[np.arange(count) % period]
+        for multiplier, size in zip(radii * np.exp(1j * angles), 10 ** rng.uniform(-1, 0, 2), strict=True):
+            modes = rng.normal(size=(period, NUMBERS)) + 1j * rng.normal(size=(period, NUMBERS))
+            points = points + size * (multiplier ** (n // period)[:, None] * modes[n % period]).real
+        found, scale = looked_at(points), np.abs(points).max(axis=0)
+        left = np.abs((points - orbit[n % period]) / np.maximum(scale, 1e-3 * scale.max()))[-period:].max()
+        if left < 1e-3:
+            continue
+        seen += 1
+        assert (found["period"], found["approached_period"]) == (0, period)
+        assert abs(found["approached_factor"] ** period - radii.max()) < 1e-5
+        assert abs(found["approached_distance"] / left - 1) < 1e-2
+    assert seen > 280
 
 
 def test_chaos_and_tori_are_not_on_their_way():

@@ -28,6 +28,7 @@ REPLACED = (
     (r"begun by vibro_sweep .*", "begun by vibro_sweep VERSION"),
     (r"\b\d+ (of \d+ )?points", "N points"),
     (r"\b\d+ of them a motion", "N of them a motion"),
+    (r"(largest modulus of multipliers )\S+( \.\. \S+)?(?=(\n.*)* graze )", r"\1N"),  # no bound there: rounding ends it
 )
 
 

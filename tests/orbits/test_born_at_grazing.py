@@ -11,7 +11,7 @@ from vibro_sweep.analysis.periodic.lcp import complementary, representatives
 
 
 def test_orbits_born_at_the_double_graze_of_the_paper():
-    """reference_values.md: only R, L and RL are born, all below b*."""
+    """evidence.md: only R, L and RL are born, all below b*."""
     born = vs.born_at_grazing(PAPER, periods=6)
     assert [(item.period, item.itinerary, item.born) for item in born] == [(1, "R", "below"), (1, "LR", "below")]
 

@@ -17,7 +17,7 @@ def test_what_begins_at_the_double_graze_of_the_free_motion():
 
 
 def test_one_mass_oscillator_of_the_literature():
-    """arXiv 2510.16218 (reference_values.md); the impact speed at the flip and the fold, and zero at the graze."""
+    """arXiv 2510.16218 (evidence.md); the impact speed at the flip and the fold, and zero at the graze."""
     for omega, kind, F, speed in (
         (0.81, "flip", 0.347533397, 0.0653039433),
         (0.799, "fold", 0.362836202, 0.1240873449),

@@ -64,7 +64,7 @@ def test_refusals(symmetric_branch):
 
 @pytest.mark.slow
 def test_resonances_of_the_free_motion_in_40_digits(symmetric_branch, one_sided_branch):
-    """reference_values.md: gamma = 0 at zero delay; for one impact in T or T/2, followed from impact to graze."""
+    """evidence.md: gamma = 0 at zero delay; for one impact in T or T/2, followed from impact to graze."""
     published = {
         1: (0.3283, 0.4333, 0.5489, 0.5881, 0.6499, 0.8263, 1.0803, 1.8636),
         -1: (0.3615, 0.4564, 0.6535, 0.8060, 1.0785),

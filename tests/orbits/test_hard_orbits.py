@@ -37,7 +37,7 @@ def test_many_impacts_near_the_onset_of_sticking(b, impacts):
 
 @pytest.mark.slow
 def test_period_29_from_its_graze_to_its_fold():
-    """reference_values.md, b = 6.69: symmetric, four impacts on each stop."""
+    """evidence.md, b = 6.69: symmetric, four impacts on each stop."""
     orbit = of_state(PAPER.replace(b=6.69), 29, settle=6000)
     assert (orbit.status, orbit.itinerary, orbit.symmetric, orbit.half) == ("ok", "LLLLRRRR", True, 4)
     branch = vs.continue_orbit(orbit, "b", (6.5, 6.75))

@@ -89,7 +89,7 @@ def test_canonical_itinerary_does_not_depend_on_where_the_orbit_is_met(thirteen)
 
 
 def test_multipliers_over_ten_decades_against_40_digits():
-    """b = 6.705, reference_values.md: -9869, 0.7852 +- 0.4149i, -3.7e-5 of the half map."""
+    """b = 6.705, evidence.md: -9869, 0.7852 +- 0.4149i, -3.7e-5 of the half map."""
     system = PAPER.replace(b=6.705)
     orbit = vs.periodic_orbit(system, itinerary="LR")
     with mp.workdps(40):
@@ -103,7 +103,7 @@ def test_multipliers_over_ten_decades_against_40_digits():
 
 @pytest.mark.parametrize("R", [1.0, 0.8, 0.3, 0.01, 1e-5])
 def test_product_of_the_multipliers_is_known(R):
-    """det S = R^2 and the divergence, reference_values.md."""
+    """det S = R^2 and the divergence, evidence.md."""
     system = PAPER.replace(b=4.0, R=R)
     orbit = vs.periodic_orbit(system, itinerary="LR")
     assert orbit.ok
@@ -140,7 +140,7 @@ def test_any_damping(zeta):
 
 @pytest.mark.parametrize(("n", "R"), [(1, 0.8), (2, 0.5)])
 def test_bouncing_ball_in_closed_form(n, R):
-    """reference_values.md: impact speed G n T/(1 + R), phase cos(phi) = n pi (1 - R)/((1 + R) Gamma)."""
+    """evidence.md: impact speed G n T/(1 + R), phase cos(phi) = n pi (1 - R)/((1 + R) Gamma)."""
     least = n * math.pi * (1 - R) / (1 + R)
     ball = BALL.replace(A=1.05 * least, R=R)
     speed, phase = n * 2 * math.pi / (1 + R), math.acos(1 / 1.05)

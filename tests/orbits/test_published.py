@@ -138,7 +138,7 @@ def test_a_ball_in_the_cavity_of_a_heavy_host():
 @pytest.mark.parametrize(("omega", "R", "n"), [(2.8, 0.8, 1), (2.6, 0.7, 1), (1.8, 0.8, 1), (4.3, 0.8, 2)])
 def test_one_impact_without_damping(omega, R, n):
     """x'' + x = cos(omega t), x < sigma: the end of the ellipse of speeds over sigma, and the speed where the period
-    doubles, by the closed forms of docs/papers/single_impact_orbits.md."""
+    doubles, by the closed forms of docs/papers/other_papers.md."""
     P, gamma = 2 * math.pi * n / omega, 1 / (1 - omega**2)
     c, r = math.sin(P) * (1 + R) / (1 - math.cos(P)), (1 - R) / omega
     d = 4 * R * math.cos(P) - 2 * (1 + R**2) + (omega**2 - 1) * c**2 * (1 - math.cos(P))
@@ -154,7 +154,7 @@ def test_one_impact_without_damping(omega, R, n):
 
 
 def test_amplitudes_of_a_textbook():
-    """docs/papers/nonlinear_dynamics_and_chaos.md: 60 Hz, R = 0.5; the second doubling at 0.0115 cm."""
+    """docs/papers/other_papers.md: 60 Hz, R = 0.5; the second doubling at 0.0115 cm."""
     ball = vs.Oscillator.named(
         "one_mass", k=0, zeta=0, constant=-1, base=True, F=1.2, omega=1, R=0.5, b=0, tau=0, stops="left"
     )
@@ -166,7 +166,7 @@ def test_amplitudes_of_a_textbook():
 
 
 def test_an_orbit_of_recipes_for_continuation():
-    """docs/papers/recipes_for_continuation.md: k = 1, c = 0.1, A = 1, w = 1, d = 1, e = 0.8."""
+    """docs/papers/other_papers.md: k = 1, c = 0.1, A = 1, w = 1, d = 1, e = 0.8."""
     system = vs.Oscillator.named("one_mass", k=1, zeta=0.05, F=1, omega=1, R=0.8, b=1, stops="right", tau=math.pi / 2)
     orbit = vs.periodic_orbit(system, itinerary="R")
     (hit,) = orbit.impacts

@@ -11,7 +11,7 @@ import vibro_sweep as vs
 
 @pytest.mark.parametrize("R", [0.2, 0.8, 0.95])
 def test_chatter_at_its_onset_shrinks_by_its_own_factor(R):
-    """A mass that bounces under the acceleration s - s_inf: the factor of reference_values.md makes its flights
+    """A mass that bounces under the acceleration s - s_inf: the factor of evidence.md makes its flights
     similar, and is that of `reference.chatter`, to which curves of onsets are held."""
     phi = 1 - part_lost(R)
     # velocity after an impact at s = -1 (s_inf = 0) such that the flight lasts 1 - phi; then the next one is similar
@@ -23,7 +23,7 @@ def test_chatter_at_its_onset_shrinks_by_its_own_factor(R):
 
 @pytest.mark.slow
 def test_sticking_onset_of_the_symmetric_orbit():
-    """reference_values.md: 0.064639143358."""
+    """evidence.md: 0.064639143358."""
     system = PAPER.replace(b=0.08)
     orbit = vs.periodic_orbit(system, state=vs.simulate(system, (0, 0, 0, 0), 500).section[-1])
     branch = vs.continue_orbit(orbit, "b", (0.05, 0.2))

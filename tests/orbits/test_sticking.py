@@ -11,7 +11,7 @@ import vibro_sweep as vs
 
 pytestmark = pytest.mark.slow
 
-ONSET = 0.0646391433583  # of the symmetric orbit (reference_values.md; in more digits from 60 impacts written out)
+ONSET = 0.0646391433583  # of the symmetric orbit (evidence.md; in more digits from 60 impacts written out)
 
 
 def attractor(b):

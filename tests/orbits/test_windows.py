@@ -64,7 +64,7 @@ def test_errors_of_ends_do_not_depend_on_the_last_digits_of_a_start():
 
 
 def test_a_window_is_that_of_a_stable_orbit_which_the_state_lies_on():
-    """The symmetric orbit of the paper is stable below b = 3.89 (reference_values.md)."""
+    """The symmetric orbit of the paper is stable below b = 3.89 (evidence.md)."""
     for b, part, reason in ((3.0, 1.0, "in_a_window"), (3.0, 0.99, "not_settled"), (5.0, 1.0, "not_settled")):
         orbit = vs.periodic_orbit(PAPER.replace(b=b), itinerary="LR")
         job = Job(orbit.system, part * orbit.state, 1, "b", (0.98 * b, 1.02 * b))

@@ -2,8 +2,8 @@
 
 Python makes of it an exception wherever the main thread is. In the middle of an import, or of a destructor, such an
 exception may be lost, or come out as another one. So the program ends on the spot, which does no harm, as no kill does
-(docs/development/storage.md). Only where something is left to be tidied up (a hidden file, the workers of a cluster,
-the cursor of the terminal) there is the exception, once; where it is lost, the program still ends.
+(docs/development/stored_results.md). Only where something is left to be tidied up (a hidden file, the workers of a
+cluster, the cursor of the terminal) there is the exception, once; where it is lost, the program still ends.
 """
 
 import contextlib

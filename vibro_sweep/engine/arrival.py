@@ -7,7 +7,8 @@ one recurrence with two numbers, the same for every coordinate,
 
 since the derivatives of p periods, taken from different points of the orbit, are similar matrices. The roots of
 z^2 = a z + b are their two multipliers of largest modulus: they say how fast the orbit goes there. The sum of all
-differences to come says how far it is. Chaos obeys no such recurrence; on a torus |z| is 1.
+differences to come says how far it is. Chaos obeys no such recurrence; on a torus |z| is 1. Where two modes fade away
+side by side, `two_modes.py` has four numbers.
 """
 
 import math
@@ -16,6 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from vibro_sweep.engine.simd.jit import jit
+from vibro_sweep.engine.two_modes import look_for_two_modes
 from vibro_sweep.model import exponents
 from vibro_sweep.model.exponents import ARRIVED
 
@@ -27,6 +29,7 @@ LIKE, SURE = 1e-2, 10.0  # residual up to which differences obey the recurrence,
 ALIKE, SURELY = 1e-3, 30.0  # the same where nothing better is looked for, and of long periods, which tori nearly have
 NEAR = 1e-2  # the last point, relative to its size, to the one a long period before
 BETTER = 0.3  # residual of a longer period, in that of a shorter one, with which it counts
+CLEAR = 1e-7  # residual of a recurrence beside which no second mode is seen
 WORTH_A_LOOK, LOOKED_AT = 0.1, 4  # residual of so many of the last differences with which all are looked at
 LONG_LOOKS = 8  # at longer ones: where more of them are near, they are multiples of one that is none
 SHORT = 32  # period up to which all are looked at, as far as an eighth of the points
@@ -267,11 +270,12 @@ def arrives_at_the_end(last, scale, rounding, o, found):
 
 
 @jit
-def look(section, o, scale, rounding, found):
+def look(section, o, scale, rounding, fit, found):
     """Set of `found` the period of the points, (n, 2 N); or the period that they approach, how far it is to there, and
     by how much that shrinks in a forcing period; or none.
 
     rounding : distance that it may leave between points that repeat themselves
+    fit : room for `two_modes.py`
     """
     nothing_known(found)
     for p in range(1, len(section) // 2 + 1):
@@ -296,6 +300,9 @@ def look(section, o, scale, rounding, found):
             best, found.approached_period = r, p
         if goes_there(best, True):
             break
+    two_modes = section.shape[1] > 2 and best.residual > CLEAR
+    if two_modes and look_for_two_modes(section, scale, BETTER * best.residual, fit, found):
+        return
     if not goes_there(best):
         nothing_known(found)
         return

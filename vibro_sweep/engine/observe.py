@@ -173,7 +173,7 @@ def keep_record(e, w, plan, point, result, section, phase, running, o):
     result.resting = o.resting
     if plan.states:
         set_scale(w.state[: states.shape[1]], o.largest, T)
-        look(states, o, w.state, rounding_of(o, plan), result)
+        look(states, o, w.state, rounding_of(o, plan), w.fit, result)
     for n in range(len(running)):
         for j in range(numbers):
             running[n, j] = growth[n, j] / (periods_read(n, len(running), plan.record) * T)

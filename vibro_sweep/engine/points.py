@@ -16,6 +16,7 @@ from vibro_sweep.engine.records import PAPER, Kind, point_of
 from vibro_sweep.engine.simd.jit import exported, inline, jit, noinline
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.tables import general_tables, series
+from vibro_sweep.engine.two_modes import new_fit
 from vibro_sweep.engine.variational import tangent
 from vibro_sweep.engine.variational.multiplier_groups import multipliers_of
 from vibro_sweep.model import status
@@ -56,6 +57,7 @@ class Workspace(NamedTuple):
     section: np.ndarray  # (orbits, record, 2 N)
     growth: np.ndarray  # (LANES, parts, 2 N)
     state: np.ndarray  # (2 N,), room for numbers of one orbit
+    fit: np.ndarray  # of two_modes.py
     lanes: np.ndarray  # (LANES,) the orbits of the block that are computed side by side
     # of multipliers.py, with n = 2 N vectors of as many numbers, or one more of 2 N + 2 numbers with compliant stops:
     axes: np.ndarray  # (LANES, numbers, vectors), and
@@ -82,6 +84,7 @@ def new_workspace(plan: Plan, cells: int, samples: int, orbits: int = LANES, kin
         np.empty((orbits, plan.record if plan.states else 0, states)),
         np.empty((LANES, plan.parts, states)),
         np.empty(states),
+        new_fit(),
         np.zeros(LANES, np.int64),
         np.empty((LANES, numbers, vectors)),
         np.empty((numbers, vectors)),

@@ -1,7 +1,7 @@
 """The HDF5 file: written by one process, block by block, and read by everybody; readers write nothing.
 
 While a run goes on its blocks are appended to FILE.h5.part, which becomes the file at the end
-(docs/development/storage.md).
+(docs/development/stored_results.md).
 """
 
 from importlib import import_module

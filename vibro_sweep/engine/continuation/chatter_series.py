@@ -9,7 +9,7 @@ T - s is followed by one at T - p(s), and its impulse is D(s). With mu_m(s) = su
     sum_m y_m (-s)^(m-1)/(m-1)! = sum_k D_k gamma'(s_k - s) + D(s) R/(1 + R)      restitution
 
 p, D and mu_m are power series in s, solved order by order: p = s pi(s), D = s^2 d(s), mu_m = s^(m+2) nu_m(s), and
-pi(0) = phi with phi^2 (2 + phi) = R (1 + 2 phi) (docs/validation/reference_values.md). At each order l two linear
+pi(0) = phi with phi^2 (2 + phi) = R (1 + 2 phi) (docs/evidence.md). At each order l two linear
 equations give d_l and pi_l, since pi^k and nu_m are linear in them:
 
     (pi^k)_l = .. + k phi^(k-1) pi_l      nu_m,l = .. + alpha_m d_l + beta_m pi_l
