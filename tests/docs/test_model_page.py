@@ -1,4 +1,4 @@
-"""docs/how/model.md: what it names exists, and what it says in numbers is so."""
+"""docs/how/models.md: what its table names exists, and what it says in numbers is so."""
 
 import ast
 import re
@@ -8,7 +8,7 @@ from support import ROOT
 
 import vibro_sweep as vs
 
-PAGE = (ROOT / "docs" / "how" / "model.md").read_text()
+PAGE = (ROOT / "docs" / "how" / "models.md").read_text()
 NAMED = re.findall(r"`(\w+)` \(`([\w/]+\.py)`\)", PAGE)
 
 

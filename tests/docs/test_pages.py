@@ -26,11 +26,11 @@ PAGES = {
 }
 SLOW = (
     "README.md",
-    "docs/how/cluster.md",
+    "docs/how/many_machines.md",
     "docs/development/architecture.md",
 )
 ENDING = "for job in $(jobs -p | tac); do kill $job; wait $job || true; done"  # a worker waits 8 s for its scheduler
-NETWORK = "ip link set lo up\nip addr add dev lo 10.0.0.1\n"  # the address of docs/how/cluster.md
+NETWORK = "ip link set lo up\nip addr add dev lo 10.0.0.1\n"  # the address of docs/how/many_machines.md
 
 # What these pages take from other packages, where these are not installed; workers of this machine in their place.
 STAND_INS = {

@@ -190,7 +190,7 @@ kill $(jobs -p)
 @pytest.mark.slow
 def test_the_commands_for_one_machine_listen_on_it_alone(tmp_path):
     """In a network of their own, where every listening socket is theirs: `ss` shows what other machines could reach."""
-    lines = re.findall("^dask .* 127.0.0.1 .*&$", (ROOT / "docs/how/cluster.md").read_text(), re.MULTILINE)
+    lines = re.findall("^dask .* 127.0.0.1 .*&$", (ROOT / "docs/how/many_machines.md").read_text(), re.MULTILINE)
     assert len(lines) == 2
     namespace = shutil.which("unshare"), "--net", *([] if os.geteuid() == 0 else ["--map-root-user"])
     if None in namespace or not shutil.which("ss") or subprocess.run([*namespace, "true"], check=False).returncode:

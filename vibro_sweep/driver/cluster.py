@@ -88,7 +88,7 @@ def cluster(address: str) -> Iterator[Executor]:
     if not (address.startswith("tls://") or _is_loopback(host)):
         _log.warning(
             "the scheduler %s is reached without TLS: whoever can reach it or a worker can run programs there, "
-            "so the network must be closed (docs/how/cluster.md)",
+            "so the network must be closed (docs/how/many_machines.md)",
             address,
         )
     _filter_callbacks()

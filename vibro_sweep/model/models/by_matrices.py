@@ -124,7 +124,7 @@ MODEL = Model(
     offset - b <= n . x <= offset + b
     force_power: 2   unbalance, or a shaken base
 """,
-    source="docs/how/model.md",
+    source="docs/how/models.md",
     numbers=(
         _list("force", "f", "force", "amplitude of the force with sin(omega t + tau)", units="N"),
         _list("force_cos", r"\tilde f", "force (cos)", "amplitude of the force with cos(omega t + tau)", units="N"),

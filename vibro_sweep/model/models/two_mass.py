@@ -40,7 +40,7 @@ MODEL = Model(
     mu_m x2'' + 2 zeta ((1 + mu_c) x2' - x1') + (1 + mu_k) x2 - x1 = f2 sin(omega t + tau)
     offset - b <= x1 <= offset + b;   mu_c = mu_k unless it is given
 """,
-    source="the paper that this package follows, eqs. (3), (4): docs/how/model.md",
+    source="the paper that this package follows, eqs. (3), (4): docs/how/models.md",
     numbers=PARAMETERS,
     options=(WHICH_STOPS, *OF_STOPS, UNITS),
     masses=lambda given: 2,
