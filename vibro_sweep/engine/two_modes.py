@@ -15,13 +15,14 @@ from vibro_sweep.engine.simd.jit import jit
 
 NUMBERS = 4  # of the recurrence
 PERIODS = 4  # up to which periods are looked at
-LOOKED_AT = 4  # differences at the end that have to obey it before all are looked at
+LOOKED_AT = 2  # differences at the end that have to obey it before all are looked at
 LEAST_FITTED = 16  # differences: chaos obeys it for as long as it does not come to a stop
 RESIDUAL = 1e-3  # of the differences, up to which they obey it
 SURE = 30.0  # by how many residuals |z| is to be below 1
 ROUNDING = 1e-9  # residual that rounding may leave unseen
 MOST_FITTED = 512  # points, the last ones
 UNTOLD = 1e-13  # of the first pivot: a smaller one determines no number
+LEAST = 1e-140  # difference, whose square is no subnormal number
 HALVINGS = 52  # of the interval in which |z| is looked for
 
 
@@ -41,8 +42,8 @@ def add_equation(fit):
     """Turn the equation of the last row into the triangle above it by plane rotations, so that no digits are lost where
     the differences are nearly alike. Returns what the triangle cannot take of it."""
     for k in range(NUMBERS):
-        if fit[NUMBERS, k] != 0.0:
-            size = math.hypot(fit[k, k], fit[NUMBERS, k])
+        if abs(fit[NUMBERS, k]) > LEAST:
+            size = math.sqrt(fit[k, k] ** 2 + fit[NUMBERS, k] ** 2)
             c, s = fit[k, k] / size, fit[NUMBERS, k] / size
             for m in range(k, NUMBERS + 1):
                 above, below = fit[k, m], fit[NUMBERS, m]
