@@ -34,21 +34,10 @@ def place(page: Page, across: float, down: float) -> tuple[float, float]:
     return box["x"] + across * box["width"], box["y"] + down * box["height"]
 
 
-def number(page: Page, name: str, value: str) -> None:
-    page.fill(f"#field-{name}", value)
-    page.press(f"#field-{name}", "Enter")
-    settle(page)
-
-
 def pictures(page: Page, address: str) -> None:
     page.goto(address)
     settle(page)
     keep(page, "start")
-    number(page, "R", "0.6")
-    page.press("#diagram", "f")
-    settle(page)
-    keep(page, "softer")
-    number(page, "R", "0.8")
     for key, value in (("low", "5.3"), ("high", "6.1")):
         page.fill(f"#{key}", value)
     page.press("#high", "Enter")
@@ -61,8 +50,6 @@ def pictures(page: Page, address: str) -> None:
     page.mouse.click(*place(page, 0.6875, 0.4))
     page.keyboard.up("Shift")
     page.wait_for_selector("#facts b.second")
-    page.wait_for_timeout(500)
-    keep(page, "orbits", whole=True)
     page.mouse.click(*place(page, 0.35, 0.4))
     page.click("#why")
     page.locator("#window", has_text="upper end").wait_for(timeout=120_000)

@@ -51,6 +51,7 @@ KINDS = {  # its study, in tests/support
     "runs-of-scenes": "any_scenes.study_of_runs",
     "extreme-numbers": "any_scenes.study_of_extremes",
     "same-bits": "same_bits.study",
+    "arrivals": "arrivals.study",
     "files": "fuzz_files.study",
     "kills": "kills.study",
     "units": "units.study",

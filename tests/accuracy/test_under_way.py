@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from support import slow_cases
+from support import sample, slow_cases
+from support.arrivals import study
 
 import vibro_sweep as vs
 
@@ -71,6 +72,13 @@ def test_at_rest_in_one_number_is_arrived():
         system = vs.Oscillator.named("chain", **numbers, stops="right", tau=tau)
         data = vs.sweep(system, {"b": [22e-9]}, transient=9000, record=60, observe=["section"])
         assert (data.status.item(), data.period.item()) == (0, 1)
+
+
+@pytest.mark.parametrize("seed", sample(4, range(40)))
+def test_judged_by_going_on(seed):
+    """No orbit that is ok with a period is far from it when it has gone on 30 times longer."""
+    counted, wrong = study(seed)
+    assert wrong == [] and counted["and_said_so"] == counted["had_arrived"]
 
 
 def drawn(rng, time=1.0, length=1.0, mass=1.0):
