@@ -12,7 +12,7 @@ MASSES = ("one", "two", "isolator", "free", "ball")
 
 
 def drawn(rng: np.random.Generator) -> vs.Oscillator:
-    """One or two masses, in or off resonance, Q from 5 to 100 000: isolators that creep, free masses, balls that fall."""
+    """One or two masses, in or off resonance, Q from 5 to 100 000; isolators that creep, free masses, balls."""
     kind, Q, resonant = rng.choice(MASSES), 10 ** rng.uniform(np.log10(5), 5), rng.random() < 0.5
     if kind in ("one", "ball"):
         M, K, force, normal = np.eye(1), np.eye(1), np.array([rng.uniform(0.1, 1)]), [1.0]
