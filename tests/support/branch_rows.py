@@ -95,7 +95,7 @@ def imprecise(row: dict, branch) -> list[str]:
     for (kind, value, error, *_), special in zip(row["special"], branch.special, strict=True):
         if not (special.error <= 5 * error or kind == "boundary"):
             wrong.append(f"{kind} at {value!r} states the error {special.error:.1e}")
-        if kind in AT_ONE and not np.abs(special.multipliers - AT_ONE[kind]).min() < 1e-10:
+        if kind in AT_ONE and not np.abs(special.multipliers - AT_ONE[kind]).min() < row.get("critical", 1e-10):
             wrong.append(f"{kind} at {value!r} has multipliers {special.multipliers}")
     return wrong
 
