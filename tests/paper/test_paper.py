@@ -1,4 +1,4 @@
-"""The paper's scenes, and what the table that `python benchmarks/paper.py` prints must say."""
+"""The paper's scenes, and what the table of the page on the paper says."""
 
 import pytest
 from support import paper

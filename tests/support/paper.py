@@ -1,7 +1,6 @@
 """The paper's scenes, and the numbers of the table "what the paper says / the map / the exact flow".
 
-`python benchmarks/paper.py` draws and prints them, tests/paper/test_paper.py holds them. No number of the table is
-typed in but those that the paper prints (`PAPER`).
+tests/paper/test_paper.py holds them. No number of the table is typed in but those that the paper prints (`PAPER`).
 """
 
 import tempfile

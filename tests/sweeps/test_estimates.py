@@ -1,4 +1,4 @@
-"""What a scene is said to take, by clocks that run as the test says; benchmarks/estimates.py compares real ones."""
+"""What a scene is said to take, by clocks that run as the test says; benchmarks/first_minutes.py compares real ones."""
 
 import errno
 import logging
