@@ -362,7 +362,7 @@ def api() -> Iterator[str]:
     yield from head(
         "Python interface",
         "Every public name: what it takes and returns, shapes, units, errors, and an example whose result is checked.\n"
-        "`import vibro_sweep as vs`. Times are nondimensional, phases in radians; with N masses a state is\n"
+        "`import vibro_sweep as vs`. Times are those of the numbers given (of `System`: nondimensional), phases in radians; with N masses a state is\n"
         "x1 v1 .. xN vN, (2N,).",
     )
     groups = re.findall(r"^(\S.*)\n((?: {4}.*\n)+)", vibro_sweep.__doc__, re.MULTILINE)

@@ -199,7 +199,7 @@ def test_the_comparison_sees_a_window_that_moved(kind):
     changed = copy.deepcopy(record["result"])
     k = next(k for k, window in enumerate(changed["windows"]) if window["ends"][0]["type"] == "graze")
     end = changed["windows"][k]["ends"][0]
-    end["parameters"][record["parameter"]] -= 2 * both_errors(end)
+    end["parameters"][record["parameter"]] -= 4 * both_errors(end)
     assert windows.compared(record, changed, found) != [] == windows.compared(record, record["result"], found)
 
 
