@@ -362,8 +362,8 @@ def api() -> Iterator[str]:
     yield from head(
         "Python interface",
         "Every public name: what it takes and returns, shapes, units, errors, and an example whose result is checked.\n"
-        "At a prompt `help(vs.sweep)` says the same. `import vibro_sweep as vs`. Times are those of the numbers given (of\n"
-        "`System`: nondimensional), phases in radians; with N masses a state is x1 v1 .. xN vN, (2N,).",
+        "At a prompt `help(vs.sweep)` says the same. `import vibro_sweep as vs`. Times are those of the numbers given\n"
+        "(of `System`: nondimensional), phases in radians; with N masses a state is x1 v1 .. xN vN, (2N,).",
     )
     groups = re.findall(r"^(\S.*)\n((?: {4}.*\n)+)", vibro_sweep.__doc__, re.MULTILINE)
     known = [*vibro_sweep.__all__]
