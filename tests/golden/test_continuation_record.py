@@ -71,13 +71,13 @@ def with_a_point_more(result):
 def with_a_point_moved(result):
     special = result["special"][1]
     name = next(iter(special["parameters"]))
-    special["parameters"][name] += 4 * both_errors(special)
+    special["parameters"][name] += 2 * both_errors(special)
 
 
 def with_an_end_moved(result):
     ends = [result["special"][k] for k in result["ends"]]
     special = next(one for one in ends if one["type"] != "boundary")
-    special["parameters"]["b"] -= 4 * both_errors(special)
+    special["parameters"]["b"] -= 2 * both_errors(special)
 
 
 def with_another_type(result):
@@ -199,7 +199,7 @@ def test_the_comparison_sees_a_window_that_moved(kind):
     changed = copy.deepcopy(record["result"])
     k = next(k for k, window in enumerate(changed["windows"]) if window["ends"][0]["type"] == "graze")
     end = changed["windows"][k]["ends"][0]
-    end["parameters"][record["parameter"]] -= 4 * both_errors(end)
+    end["parameters"][record["parameter"]] -= 2 * both_errors(end)
     assert windows.compared(record, changed, found) != [] == windows.compared(record, record["result"], found)
 
 
@@ -217,6 +217,6 @@ def test_the_comparison_sees_an_onset_that_moved():
     lost, moved = copy.deepcopy(record["result"]), copy.deepcopy(record["result"])
     k = next(k for k, one in enumerate(moved) if one is not None)
     lost[k] = None
-    moved[k]["parameters"][record["parameter"]] += 5 * moved[k]["error"]
+    moved[k]["parameters"][record["parameter"]] += 3 * moved[k]["error"]
     assert onsets.compared(record, record["result"], record["result"]) == []
     assert all(onsets.compared(record, changed, record["result"]) for changed in (lost, moved))

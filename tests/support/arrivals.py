@@ -43,9 +43,9 @@ def drawn(rng: np.random.Generator) -> vs.Oscillator:
     )  # fmt: skip
 
 
-def recorded(system: vs.Oscillator, transient: int, record: int):
+def recorded(system: vs.Oscillator, transient: int, record: int, *more: str):
     """The Dataset of one column, and its section points (record, 2 N)."""
-    data = vs.sweep(system, {"b": [system.b]}, transient=transient, record=record, observe=["section"])
+    data = vs.sweep(system, {"b": [system.b]}, transient=transient, record=record, observe=["section", *more])
     names = [name for k in range(1, system.masses + 1) for name in (f"x{k}", f"v{k}")]
     return data, np.stack([data[name].values[0] for name in names], axis=-1)
 
@@ -55,20 +55,24 @@ def study(seed: int) -> Report:
     rng = np.random.default_rng([seed, 77])
     system, transient, record = drawn(rng), int(10 ** rng.uniform(2, 3.5)), int(rng.integers(40, 201))
     data, points = recorded(system, transient, record)
-    later, end = recorded(system, LONGER * (transient + record), 200)
+    later, end = recorded(system, LONGER * (transient + record), 200, "lyapunov")
     status, period, P = data.status.item(), data.period.item(), later.period.item()
     sizes = np.abs(points).max(axis=0)
     units = np.tile([1.0, system.omega], system.masses)
     sizes = np.maximum(sizes, 1e-3 * (sizes / units).max() * units)
     apart = [np.abs((points - np.roll(end, k, axis=0)[-P:][np.arange(record) % P]) / sizes) for k in range(P)]
     had_arrived = P > 0 and 3 * P + 8 <= record and min(a[:P].max() for a in apart) < THERE
-    way = later.approached_period.item() > 0
+    comes = P > 0 or later.approached_period.item() > 0
+    largest, error = later.lyapunov.values[0, 0], later.lyapunov_error.values[0, 0]
+    chaotic = P == 0 and largest > 2 * error  # whatever is said of its points
     report = new_report(
         machines=1, with_a_period=int(period > 0), on_the_way=int(status == 6), had_arrived=int(had_arrived),
         and_said_so=int(had_arrived and period > 0),
-        periodic_later=int(status == 0 and period == 0 and (P > 0 or way)),
-        irregular_later=int(P == 0 and not way),
-        of_these_on_the_way=int(P == 0 and not way and status == 6),
+        ok_and_periodic_later=int(status == 0 and period == 0 and comes),
+        irregular_later=int(not comes),
+        of_these_on_the_way_before=int(not comes and status == 6),
+        chaotic_later=int(chaotic),
+        of_these_on_the_way=int(chaotic and later.status.item() == 6),
     )  # fmt: skip
     if period > 0 and P > 0 and min(a[-1].max() for a in apart) > FAR:
         report.wrong.append(f"seed {seed}: period {period} at {min(a[-1].max() for a in apart):.1e} from the orbit")
