@@ -17,7 +17,7 @@ import vibro_sweep as vs
 
 RECORD, FEW = 2000, 100
 MOST = 2048  # orbits of a sweep at most
-SECONDS = 0.1  # that a sample takes at least
+SECONDS = 0.2  # that a sample takes at least
 COUNT = 20  # of contacts, and of impacts of chains, that are compared
 OURS, EXPONENTS = "vibro_sweep", "vibro_sweep, exponents"
 BATCH, SCALAR, BARE = "heyoka, batch of 8", "heyoka, one orbit", "heyoka, batch of 8, no events"

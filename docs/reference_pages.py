@@ -135,7 +135,8 @@ def scenes() -> Iterator[str]:
             yield from _other_models(tables)
         form = definitions[name]
         beside = [definitions[other] for other, where in paths.items() if where == path and other != name]
-        yield f"## `{path}`{_telling(form, beside)}\n\n{form['description']}\n"
+        title = path.replace(".", ": ")  # GitHub leaves dots out of links to a heading
+        yield f"## `{title}`{_telling(form, beside)}\n\n{form['description']}\n"
         yield from tables.of(form)
     yield from _words()
     yield "## Scenes that come with the program\n"

@@ -190,17 +190,17 @@ def test_what_run_is_told(scene_folder, monkeypatch):
     told = []
 
     def record(scene, output, workers, executor, progress, mode):
-        told.append((scene.name, str(output), workers, executor, progress, mode))
+        told.append((scene.name, str(output), workers, executor, progress is not None, mode))
         return SimpleNamespace(points=3, bad=0, statuses={"ok": 3}, seconds=0.0, computed=3)
 
     monkeypatch.setattr("vibro_sweep.driver.run.run", record)
     assert main(["run", "good.yaml"]) == 0
     assert main(["run", "good.yaml", "--workers", "3", "--resume", "--quiet"]) == 0
     assert main(["run", "good.yaml", "-o", "x.h5", "--overwrite"]) == 0
-    assert told == [
-        ("good", "good.h5", None, None, None, "new"),
-        ("good", "good.h5", 3, None, None, "resume"),
-        ("good", "x.h5", None, None, None, "overwrite"),
+    assert told == [  # progress is told but with --quiet
+        ("good", "good.h5", None, None, True, "new"),
+        ("good", "good.h5", 3, None, False, "resume"),
+        ("good", "x.h5", None, None, True, "overwrite"),
     ]
 
 

@@ -41,10 +41,17 @@ def test_a_bar_in_notebooks_of_what_takes_long(monkeypatch, slow):
     assert not slow or "2 of 4 points, 0:30 left" in texts[1]
 
 
-def test_no_bar_where_nobody_looks(monkeypatch):
+def test_a_line_a_minute_where_no_bar_can_be_drawn(monkeypatch, caplog):
     in_a_shell(monkeypatch, "TerminalInteractiveShell")
-    with progress.progress_bar(4, quiet=False) as show:
-        assert show is None
+    times = iter((0.0, 50.0, 70.0, 70.0, 90.0, 150.0))
+    monkeypatch.setattr(progress.time, "monotonic", lambda: next(times))
+    with caplog.at_level("INFO", "vibro_sweep"), progress.progress_bar(4000, quiet=False) as show:
+        for done in (1000, 2000, 3000, 4000):
+            show(done, 4000)
+    assert caplog.messages == ["2,000 of 4,000"]
+
+
+def test_no_bar_where_it_is_not_wanted(monkeypatch):
     in_a_shell(monkeypatch, "ZMQInteractiveShell")
     with progress.progress_bar(4, quiet=True) as show:
         assert show is None

@@ -72,7 +72,7 @@ TOLD = {
         "LLLRRR, period 1, symmetric",
     ],
     "curve": ["pitchfork", "omega 0.629 .. 0.631", "points", "begins with boundary", "ends with boundary"],
-    "curve point": ["CurvePoint boundary at b = ", "omega = "],
+    "curve point": ["CurvePoint boundary (not followed beyond) at b = ", "omega = "],
     "windows": ["Windows in b: 3", "RRRR, period 8", "5.454438024 .. 5.809346285"],
     "window": ["RRRR, period 8", "2 orbits of the sweep", "begins with graze (nonsmooth fold, right)", "+-"],
 }

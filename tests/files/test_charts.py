@@ -88,7 +88,7 @@ def test_commands(file, tmp_path, monkeypatch, capsys):
     assert "curves in b = 2.5 .. 6, omega = 0.58 .. 0.68" in told and "branches  in b" in told
     assert main(["info", str(file)]) == 0
     told = capsys.readouterr().out
-    assert "curves: 1, special points:" in told and "degenerate-flip" in told
+    assert "curves: 1, special points:" in told and "degenerate_flip" in told
     assert main(["plot", str(file), "-o", "chart.svg"]) == 0
     drawn = (tmp_path / "chart.svg").read_text()
     assert "pitchfork" in drawn and "GPD" in drawn and "virtual" not in drawn

@@ -77,8 +77,8 @@ def special_table(arrays: Mapping, parameters: list[str]) -> list[str]:
 def curves_table(arrays: Mapping, parameters: list[str]) -> list[str]:
     """A line for each special point of each curve; then how many curves of which type."""
     kinds = [CURVES[code] for code in np.asarray(arrays["branch_type"]).tolist()]
-    names = [CODIMENSION_TWO[code].name.replace("_", "-") for code in np.asarray(arrays["special_type"]).tolist()]
-    told = _special(arrays, "curve", "curves", parameters, names, [kind.replace("_", "-") for kind in kinds])
+    names = [CODIMENSION_TWO[code].name for code in np.asarray(arrays["special_type"]).tolist()]
+    told = _special(arrays, "curve", "curves", parameters, names, kinds)
     told += ["curves       " + _counted(Counter(kinds))] if kinds else []
     if "edge_reason" not in arrays:
         return told
@@ -115,7 +115,9 @@ def ending(arrays: Mapping, special: int) -> str:
         more.append("right" if arrays["special_stop"][special] > 0 else "left")
     elif arrays["special_criticality"][special]:
         more.append(CRITICALITIES[int(arrays["special_criticality"][special])])
-    return kind.replace("_", "-") + (f" ({', '.join(more)})" if more else "")
+    elif kind == "boundary":
+        more.append("not followed beyond")
+    return kind + (f" ({', '.join(more)})" if more else "")
 
 
 def _number(arrays: Mapping, special: int) -> str:

@@ -138,7 +138,11 @@ def search_of(
 ) -> WindowSearch:
     """The windows of rows; those that `file` has pieces of are not followed again."""
     search = WindowSearch(rows)
-    tell = (lambda *_: progress(search.done, search.total)) if progress else None
+
+    def tell(done: int, _: int) -> None:  # an orbit that was followed has its window, or a reason, soon
+        if progress:
+            progress(max(search.done, done), search.total)
+
     search.search(computed(window_of, is_window, pool, file, tell))
     return search
 

@@ -61,7 +61,7 @@ def way_of(begins: "SpecialPoint", special: "Sequence[SpecialPoint]", ends: "Spe
 def of_followed(followed: "FollowedBranch") -> str:
     """One line, as these come in lists."""
     branch = followed.branch
-    ends = f"{branch.begins.type} .. {branch.ends.type}".replace("_", "-")
+    ends = f"{branch.begins.type} .. {branch.ends.type}"
     reached = "" if followed.special is None else f" over {event(followed.special)} of branch {followed.parent}"
     p = span(branch.points[branch.parameter].values)
     kind = f"{itinerary_of(_orbit_on(branch))}, {branch.parameter} {p}, {ends}, status {branch.status}"
@@ -71,10 +71,12 @@ def of_followed(followed: "FollowedBranch") -> str:
 def event(point: "SpecialPoint") -> str:
     """The type of a special point and where it is."""
     more = [point.kind, {1: "right", -1: "left"}.get(point.stop), point.criticality]
-    kind = point.type.replace("_", "-") + (f" ({', '.join(filter(None, more))})" if any(more) else "")
+    if point.type == "boundary":
+        more = ["not followed beyond"]
+    kind = point.type + (f" ({', '.join(filter(None, more))})" if any(more) else "")
     error = f" +- {point.error:.1e}" if np.isfinite(point.error) and point.error > 0 else ""
     return f"{kind} at {', '.join(f'{name} = {value:.16g}' for name, value in point.parameters.items())}{error}"
 
 
 def counted(points: "list[SpecialPoint]") -> str:
-    return ", ".join(f"{n} {kind.replace('_', '-')}" for kind, n in Counter(one.type for one in points).items())
+    return ", ".join(f"{n} {kind}" for kind, n in Counter(one.type for one in points).items())

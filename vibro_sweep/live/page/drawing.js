@@ -279,7 +279,7 @@ export class Drawing {
       if (i === 1 && dots.x + dots.w - left < 150) context.textAlign = "right";
       const by = context.textAlign === "left" ? 4 : -4;
       const level = dots.y + 18 + 28 * i;
-      this.readable(end.type.replace("_", "-"), left + by, level, theme);
+      this.readable(end.type, left + by, level, theme);
       this.readable(short(end.value, 9), left + by, level + 13, theme);
     });
   }

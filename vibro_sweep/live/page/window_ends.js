@@ -16,9 +16,9 @@ export function branchesOf({ arrays, branches = [] }) {
 
 export function wordsOfWindow(why, axis) {
   if (why.reason) return [paragraph(`At ${axis} = ${shown(why.value)}: ${why.reason}.`)];
-  const end = (one, side) => paragraph(`${side} end ${shown(one.value)}${one.error ? ` ± ${short(one.error, 1)}` : ""}: ${one.type.replace("_", "-")}, ${one.text}`);
+  const end = (one, side) => paragraph(`${side} end ${shown(one.value)}${one.error ? ` ± ${short(one.error, 1)}` : ""}: ${one.type}, ${one.text}`);
   const kind = `${why.itinerary || `without ${why.event}s`}, period ${why.period}${why.symmetric ? ", symmetric" : why.mirrored ? ", or its mirror image" : ""}`;
-  const others = why.specials.filter((one) => one.type !== "boundary").map((one) => `${one.type.replace("_", "-")} at ${short(one.value, 8)}`);
+  const others = why.specials.filter((one) => one.type !== "boundary").map((one) => `${one.type} at ${short(one.value, 8)}`);
   return [
     paragraph(`Window of the orbit ${kind}:`), end(why.low, "lower"), end(why.high, "upper"),
     paragraph(`On its branch, stable (solid) or not (dashed): ${others.join(", ") || "no special point"}.`),
