@@ -7,41 +7,36 @@ from support import ROOT
 
 HOME = ROOT / "vibro_sweep"
 ALLOWED = {
-    "model": set(),
-    "engine": {"model"},
-    "analysis": {"engine", "model", "plotting", "driver"},
-    "scene": {"model", "driver"},
-    "store": {"model", "scene"},
-    "driver": {"model", "engine", "analysis", "scene", "store"},
-    "plotting": {"store", "model"},
-    "live": {"model", "engine", "analysis", "scene", "store", "driver", "plotting"},
-    "cli": {"model", "engine", "scene", "store", "driver", "plotting", "live"},
-    "types": {"model", "analysis", "scene", "driver", "live"},
+    "tables": set(),
+    "model": {"tables"},
+    "engine": {"tables", "model"},
+    "analysis": {"tables", "model", "engine", "plotting", "driver"},
+    "scene": {"tables", "model", "driver"},
+    "store": {"tables", "model", "scene"},
+    "driver": {"tables", "model", "engine", "analysis", "scene", "store"},
+    "plotting": {"tables", "model", "store"},
+    "live": {"tables", "model", "engine", "analysis", "scene", "store", "driver", "plotting"},
+    "cli": {"tables", "model", "engine", "scene", "store", "driver", "plotting", "live"},
+    "types": {"tables", "model", "analysis", "scene", "driver", "live"},
 }
 # of analysis/: in this order
 FLOORS = ["single", "attractors", "periodic", "continuation", "branches", "curves", "windows"]
 EVERYWHERE = {"__version__"}
 TABLES = {
     "arguments",
-    "bifurcations",
     "branch_file",
     "catalogue",
     "dimensions",
     "errors",
-    "exponents",
     "files",
     "observables",
-    "outcomes",
     "parameters",
-    "picture_kinds",
     "real",
     "refusals",
     "state",
-    "status",
     "stop_force",
     "stops",
     "trajectory_variables",
-    "units",
 }  # of model/: names and labels, checks of arguments, and the force of a stop, which follows from stored samples
 
 

@@ -12,11 +12,11 @@ from vibro_sweep.engine import points
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.variational.spectrum import BATCHES
 from vibro_sweep.model.any_oscillator import AnyOscillator
-from vibro_sweep.model.exponents import RUNNING
 from vibro_sweep.model.grid import grid
 from vibro_sweep.model.observables import WORDS
 from vibro_sweep.scene import Scene
 from vibro_sweep.store import quantities
+from vibro_sweep.tables.exponents import RUNNING
 
 
 class Block(NamedTuple):

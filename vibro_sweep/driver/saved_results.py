@@ -18,7 +18,6 @@ from vibro_sweep.driver.joining import joined
 from vibro_sweep.driver.origins import Source, attributes_of
 from vibro_sweep.driver.provenance import provenance
 from vibro_sweep.model.any_oscillator import AnyOscillator
-from vibro_sweep.model.bifurcations import CURVES
 from vibro_sweep.model.branch_file import BRANCHES, CHART, columns_of
 from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.files import ExistingFileError, file_to_write
@@ -28,6 +27,7 @@ from vibro_sweep.model.state import state
 from vibro_sweep.scene import Continuation
 from vibro_sweep.store.creating import Subject
 from vibro_sweep.store.ragged_files import RaggedContents
+from vibro_sweep.tables.bifurcations import CURVES
 
 if TYPE_CHECKING:
     import xarray

@@ -12,7 +12,7 @@ from vibro_sweep.analysis.branches import seeds
 from vibro_sweep.analysis.curves import curve_arrays as curves
 from vibro_sweep.model.branch_file import CHART, WINDOWS, columns
 from vibro_sweep.model.column import Column
-from vibro_sweep.model.outcomes import EDGES, REASONS
+from vibro_sweep.tables.outcomes import EDGES, REASONS
 
 Arrays = Mapping[str, np.ndarray]
 

@@ -14,7 +14,6 @@ from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.tables import cells
 from vibro_sweep.engine.tables.flight import Flight
 from vibro_sweep.engine.variational.spectrum import BATCHES
-from vibro_sweep.model import status
 from vibro_sweep.model.arguments import checked_state
 from vibro_sweep.model.contact import is_far
 from vibro_sweep.model.errors import ArgumentError
@@ -26,6 +25,7 @@ from vibro_sweep.model.oscillator import System
 from vibro_sweep.model.own_time import in_own_time, with_velocities
 from vibro_sweep.model.parameters import NAMES, ParameterError
 from vibro_sweep.model.stops import has_compliant
+from vibro_sweep.tables import outcomes as status
 
 IMPACT = np.dtype([("t", float), ("side", np.int8), ("v1", float), ("x2", float), ("v2", float)])
 

@@ -22,7 +22,6 @@ from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.variational.grazing_map import Expansion, iterate
 from vibro_sweep.engine.variational.parameter_sensitivity import Equations, differentiate
 from vibro_sweep.engine.variational.propagator import new_workspace
-from vibro_sweep.model import status
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.arguments import is_number
 from vibro_sweep.model.errors import ArgumentError
@@ -31,6 +30,7 @@ from vibro_sweep.model.oscillator import System, checked_system
 from vibro_sweep.model.parameters import NAMES
 from vibro_sweep.model.refusals import not_allowed
 from vibro_sweep.model.sensitivity import grazing_state, grazing_state_slopes, motion, motion_slopes
+from vibro_sweep.tables import outcomes as status
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Mapped:
     """The result of a `PeriodMap` for n states.
 
     states : (n, 2 N) where they are mapped to; NaN where the status is not 0
-    status : (n,) int8, codes of model/status.py; a state behind a stop has BEYOND_STOP
+    status : (n,) int8, codes of tables/outcomes.py; a state behind a stop has BEYOND_STOP
     impacts : n structured arrays as those of `Orbit.impacts`, t from the section at which the state starts; of chatter
         those computed one by one
     sticking : n structured arrays, fields t_on, t_off, side; t_off is the end of the map for a rest that outlasts it

@@ -1,8 +1,8 @@
 """What files hold of branches, declared once: names, dimensions, types, units, texts, words."""
 
-from vibro_sweep.model.bifurcations import CRITICALITIES, KINDS, TYPES
 from vibro_sweep.model.column import OF_PARAMETER, Column
-from vibro_sweep.model.outcomes import BRANCHES, POINTS
+from vibro_sweep.tables.bifurcations import CRITICALITIES, KINDS, TYPES
+from vibro_sweep.tables.outcomes import BRANCHES, POINTS, names
 
 OF_BRANCHES = (
     Column("branch_period", ("branch",), "i4", "period in T", "period of the orbits in forcing periods"),
@@ -26,7 +26,7 @@ OF_BRANCHES = (
         "status",
         "whether the branch was followed to both ends; one that could not be followed has its orbit as its only point",
         "1",
-        tuple(BRANCHES),
+        names(BRANCHES),
     ),
     Column(
         "branch_begins",
@@ -109,7 +109,7 @@ OF_BRANCHES = (
     Column(
         "residual", ("point",), "f8", "residual", "largest jump of the gap between two flights, relative to its size"
     ),
-    Column("status", ("point",), "i1", "status", "whether the point is a motion", "1", tuple(POINTS)),
+    Column("status", ("point",), "i1", "status", "whether the point is a motion", "1", names(POINTS)),
     Column(
         "impact_t",
         ("impact",),

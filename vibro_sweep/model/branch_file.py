@@ -5,8 +5,8 @@ from vibro_sweep.model.branch_columns import BRANCH_SECTIONS, OF_BRANCHES
 from vibro_sweep.model.column import OF_FIRST, OF_PARAMETER, Column
 from vibro_sweep.model.curve_columns import OF_CURVES
 from vibro_sweep.model.state import coordinates
-from vibro_sweep.model.units import unit_in
 from vibro_sweep.model.window_columns import OF_WINDOWS, UNVISITED
+from vibro_sweep.tables.units import unit_in
 
 BRANCHES, WINDOWS, CHART = "branches", "windows", "curves"  # the kinds of such files
 SWEEP = "sweep"  # the kind of other HDF5 files

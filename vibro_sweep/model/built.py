@@ -12,7 +12,7 @@ from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.linear import Family, Linear
 from vibro_sweep.model.models.declaration import Model
 from vibro_sweep.model.parameters import NUMBER, Parameter
-from vibro_sweep.model.units import Units
+from vibro_sweep.tables.units import Units
 
 BUILD = "build"  # the `type` of files of such sweeps
 STORED = {  # of a Linear, with the symbol that it has in files

@@ -1,9 +1,9 @@
 """What files hold of curves, along which orbits bifurcate, and of the edges of planes at which they begin."""
 
-from vibro_sweep.model.bifurcations import CODIMENSION_TWO, CURVES
 from vibro_sweep.model.branch_columns import OF_BRANCHES
 from vibro_sweep.model.column import OF_PARAMETER, Column
-from vibro_sweep.model.outcomes import EDGES
+from vibro_sweep.tables.bifurcations import CODIMENSION_TWO, CURVES
+from vibro_sweep.tables.outcomes import EDGES, names
 
 _SHARED = {
     *("branch_period", "branch_symmetric", "branch_closed", "branch_row_size", "branch_impacts", "branch_special"),
@@ -76,7 +76,7 @@ OF_EDGES = (  # of curves that begin at the edges of a plane
         "values of the attribute `parameters` at its neighbour, whose orbit has another period",
         OF_PARAMETER,
     ),
-    Column("edge_reason", ("edge",), "i1", "reason", "why the orbits of the two points differ", "1", tuple(EDGES)),
+    Column("edge_reason", ("edge",), "i1", "reason", "why the orbits of the two points differ", "1", names(EDGES)),
     Column(
         "edge_curve",
         ("edge",),

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from vibro_sweep.model import wording
 from vibro_sweep.model.any_oscillator import AnyOscillator
+from vibro_sweep.model.checked_numbers import UNITS_ALLOWED, units_from
 from vibro_sweep.model.linear import Family, Linear
 from vibro_sweep.model.models import MODELS, model_named
 from vibro_sweep.model.models.declaration import Model, Option, linear_of
@@ -19,7 +20,7 @@ from vibro_sweep.model.parameters import Parameter, ParameterError, checked_numb
 from vibro_sweep.model.real import array_of, number_of
 from vibro_sweep.model.state import MOST_MASSES
 from vibro_sweep.model.stops import check_stops, completed
-from vibro_sweep.model.units import ALLOWED, Units, units_from
+from vibro_sweep.tables.units import Units
 
 
 class Oscillator(AnyOscillator):
@@ -260,7 +261,7 @@ def _option(one: Option, value: Any) -> Any:
         return bool(value)
     elif one.kind == "units":
         if (units := units_from(value)) is None:
-            raise ParameterError(one.name, value, ALLOWED)
+            raise ParameterError(one.name, value, UNITS_ALLOWED)
         return units
     elif one.kind == "whole":
         if not isinstance(value, (int, np.integer)) or number_of(value) is None:

@@ -9,11 +9,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from vibro_sweep.model.exponents import CERTAIN
 from vibro_sweep.model.state import coordinates
-from vibro_sweep.model.status import NOT_COMPUTED, STATUSES
 from vibro_sweep.model.trajectory_variables import of_a_trajectory
 from vibro_sweep.model.variable import Variable
+from vibro_sweep.tables.exponents import CERTAIN
+from vibro_sweep.tables.outcomes import NOT_COMPUTED, STATUSES
 
 
 class Word(NamedTuple):
@@ -182,8 +182,8 @@ _OF_ANY = (
 _STATUS = Variable(
     "status", (), "status", "outcome of the computation", dtype="i1", missing=NOT_COMPUTED,
     attributes={
-        "flag_values": np.array(list(STATUSES), np.int8),  # as CF has them
-        "flag_meanings": " ".join(status.name for status in STATUSES.values()),
+        "flag_values": np.arange(len(STATUSES), dtype=np.int8) + NOT_COMPUTED,  # as CF has them
+        "flag_meanings": " ".join(status.name for status in STATUSES),
     },
 )  # fmt: skip
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.arguments import check_type
+from vibro_sweep.model.checked_numbers import UNITS_ALLOWED, units_from
 from vibro_sweep.model.grazing import resolved, with_phase
 from vibro_sweep.model.linear import Family
 from vibro_sweep.model.models.declaration import OF_STOPS, Model
@@ -27,7 +28,7 @@ from vibro_sweep.model.parameters import (
 )
 from vibro_sweep.model.real import number_of
 from vibro_sweep.model.stops import check_stops, completed
-from vibro_sweep.model.units import ALLOWED, Units, units_from
+from vibro_sweep.tables.units import Units
 
 Stops = Literal["both", "right", "left"]
 Release = Literal["displacement", "force"]
@@ -71,7 +72,7 @@ class System(AnyOscillator):
         _check_word("stops", self.stops, STOPS)
         if self.units is not None:
             if (units := units_from(self.units)) is None:
-                raise ParameterError("units", self.units, ALLOWED)
+                raise ParameterError("units", self.units, UNITS_ALLOWED)
             object.__setattr__(self, "units", units)
         for one in PARAMETERS:
             value = getattr(self, one.name)
@@ -250,5 +251,5 @@ def checked_system(system: object) -> None:
 _said, _, _examples = inspect.cleandoc(System.__doc__ or "").partition("\n\nExamples\n")
 if _examples:
     _parameters = [f"{one.name} : {one.described}; {one.range.text}" for one in PARAMETERS]
-    _parameters += [f"stops : {', '.join(STOPS)}", f"units : for labels; {ALLOWED}; left out: none"]
+    _parameters += [f"stops : {', '.join(STOPS)}", f"units : for labels; {UNITS_ALLOWED}; left out: none"]
     System.__doc__ = "\n".join([_said, "\nParameters\n----------", *_parameters, "\nExamples", _examples])

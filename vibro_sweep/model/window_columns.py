@@ -1,7 +1,7 @@
 """What files hold of windows beside their branches."""
 
 from vibro_sweep.model.column import OF_FIRST, Column
-from vibro_sweep.model.outcomes import REASONS
+from vibro_sweep.tables.outcomes import REASONS, names
 
 OF_WINDOWS = (
     Column("window_lo", ("window",), "f8", "lower end", "value of the parameter at the lower end", OF_FIRST),
@@ -50,7 +50,7 @@ OF_WINDOWS = (
         "reason",
         "reason why an orbit of the sweep lies in no window",
         "1",
-        tuple(REASONS),
+        names(REASONS),
     ),
 )
 

@@ -5,7 +5,6 @@ from pathlib import Path
 
 import numpy as np
 
-from vibro_sweep.model.bifurcations import CODIMENSION_TWO, CURVES
 from vibro_sweep.model.branch_file import CHART
 from vibro_sweep.model.refusals import shown
 from vibro_sweep.plotting import planes
@@ -15,6 +14,7 @@ from vibro_sweep.plotting.plot_options import PlotOptions
 from vibro_sweep.plotting.ragged import RaggedFile, sweep_below
 from vibro_sweep.plotting.relative import axis_label, check_relative
 from vibro_sweep.plotting.sweep_result import PlotError, Result
+from vibro_sweep.tables.bifurcations import CODIMENSION_TWO, CURVES
 
 NAMED = 14  # points of codimension two that are named over a plane
 

@@ -16,8 +16,8 @@ from vibro_sweep.model.models import DEFAULT, MODELS
 from vibro_sweep.model.models.declaration import Model
 from vibro_sweep.model.observables import WORDS
 from vibro_sweep.model.parameters import Parameter
-from vibro_sweep.model.picture_kinds import PICTURES
 from vibro_sweep.model.state import coordinates
+from vibro_sweep.tables.picture_kinds import PICTURES
 
 from .continue_form import continue_form
 from .fields import WHICH, Form, Whole, given, keys, swept

@@ -12,11 +12,11 @@ from vibro_sweep.model.built import stored_names
 from vibro_sweep.model.catalogue import AXES
 from vibro_sweep.model.dimensions import Dimension
 from vibro_sweep.model.parameters import Parameter
-from vibro_sweep.model.units import unit_in
 from vibro_sweep.model.variable import Variable
 from vibro_sweep.scene import Scene, resolved_numbers
 from vibro_sweep.store.attributes import MATRIX, describe, set_text, set_value
 from vibro_sweep.store.layout import chunk_shape, coordinates, dimensions, quantities
+from vibro_sweep.tables.units import unit_in
 
 # To Fletcher-32 two zero bytes are the same as two bytes of ones, so that 0 could become -65536 unseen. Adler-32, which
 # comes with gzip, distinguishes them; level 0 compresses nothing, and costs no time.

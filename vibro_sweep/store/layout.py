@@ -6,11 +6,11 @@ import numpy as np
 
 from vibro_sweep.model.dimensions import DIMENSIONS, averaged
 from vibro_sweep.model.dimensions import dimensions as dimensions_of
-from vibro_sweep.model.exponents import RUNNING, periods_read
 from vibro_sweep.model.observables import SETTLE, asked_for
 from vibro_sweep.model.trajectory_variables import TRAJECTORY
 from vibro_sweep.model.variable import Variable
 from vibro_sweep.scene import Scene, resolved_numbers
+from vibro_sweep.tables.exponents import RUNNING, periods_read
 
 CHUNK_BYTES = 2**17  # read at once
 

@@ -7,7 +7,7 @@ averages of these, differ.
 
 import numpy as np
 
-from vibro_sweep.model.exponents import sign_of
+from vibro_sweep.tables.exponents import sign_of
 
 BAD, NOT_SETTLED = -1, 0  # of an orbit without attractor
 ERRORS = 4  # to each side of an average; where the ranges of two orbits meet, the averages may be the same
