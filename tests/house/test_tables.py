@@ -13,12 +13,11 @@ from vibro_sweep.driver.blocks import plan_of
 from vibro_sweep.engine.records import POINT, new_results, result_of
 from vibro_sweep.engine.simd.jit import ENGINE, SHARED
 from vibro_sweep.model.catalogue import OF_A_SYSTEM
-from vibro_sweep.model.dimensions import DIMENSIONS
 from vibro_sweep.model.models import MODELS
-from vibro_sweep.model.observables import VARIABLES
-from vibro_sweep.model.parameters import NAMES
-from vibro_sweep.model.state import MOST_MASSES
+from vibro_sweep.model.models.two_mass import NAMES
 from vibro_sweep.scene import resolved_numbers
+from vibro_sweep.tables.coordinates import MOST_MASSES
+from vibro_sweep.tables.observables import DIMENSIONS, VARIABLES
 
 PAPER = "system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0.1, omega: 0.63, R: 0.8, b: 6.6}"
 NEEDS = {"section": "states", "lyapunov": "states lyapunov", "impacts": "impacts", "convergence": "states lyapunov",

@@ -10,12 +10,12 @@ import h5py
 import numpy as np
 
 from vibro_sweep.cli.ragged_tables import curves_table, special_table, windows_table
-from vibro_sweep.model.branch_file import CHART, WINDOWS
-from vibro_sweep.model.observables import GAP
 from vibro_sweep.store import checks
 from vibro_sweep.store.attributes import is_flat, quantities_of, text, texts
 from vibro_sweep.store.opening import REMEDY, ForeignError, StoreError, opened
 from vibro_sweep.tables.exponents import CERTAIN, periods_to_go, sign_of
+from vibro_sweep.tables.file_columns import CHART, WINDOWS
+from vibro_sweep.tables.observables import GAP
 from vibro_sweep.tables.outcomes import NOT_COMPUTED, NOT_SETTLED, REASONS, VALID, named, status_of
 
 # datasets of a sweep that are read

@@ -12,9 +12,9 @@ from vibro_sweep.model.grazing import Grazing, grazing
 from vibro_sweep.model.linear import static_state
 from vibro_sweep.model.models import MODELS
 from vibro_sweep.model.models.declaration import Model, Option
-from vibro_sweep.model.parameters import Parameter
-from vibro_sweep.model.state import state as names
+from vibro_sweep.tables.coordinates import state as names
 from vibro_sweep.tables.outcomes import STATUSES
+from vibro_sweep.tables.quantity import Parameter
 
 if TYPE_CHECKING:
     from vibro_sweep.driver.cost import Estimate

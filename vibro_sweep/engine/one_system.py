@@ -20,10 +20,11 @@ from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.invariant_planes import moved
 from vibro_sweep.model.linear import stacked
 from vibro_sweep.model.metric import ROUNDING
+from vibro_sweep.model.models.two_mass import NAMES
 from vibro_sweep.model.modes import modes
 from vibro_sweep.model.oscillator import System
 from vibro_sweep.model.own_time import in_own_time, with_velocities
-from vibro_sweep.model.parameters import NAMES, ParameterError
+from vibro_sweep.model.refusals import ParameterError
 from vibro_sweep.model.stops import has_compliant
 from vibro_sweep.tables import outcomes as status
 

@@ -26,8 +26,8 @@ from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.arguments import is_number
 from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.linear import Linear, gap_response, rigid_family_of
+from vibro_sweep.model.models.two_mass import NAMES
 from vibro_sweep.model.oscillator import System, checked_system
-from vibro_sweep.model.parameters import NAMES
 from vibro_sweep.model.refusals import not_allowed
 from vibro_sweep.model.sensitivity import grazing_state, grazing_state_slopes, motion, motion_slopes
 from vibro_sweep.tables import outcomes as status
@@ -62,7 +62,7 @@ class PeriodMap:
         whatever the system's tau, and which knows no behind of a stop
     expand_at : clearance at which that is expanded, by default the exact b*
 
-    `names` : the parameters by which it has derivatives, in order: those of a System are `model.parameters.NAMES`, of
+    `names` : the parameters by which it has derivatives, in order: those of a System are `NAMES` (two_mass.py), of
         others all numbers that are given. Raises ValueError for another order, and for the discontinuity mapping of an
         oscillator that is not symmetric, or has no steady motion.
     """

@@ -12,8 +12,8 @@ from vibro_sweep.driver.compute import compute
 from vibro_sweep.live.requests import View
 from vibro_sweep.live.views import scene_of_view
 from vibro_sweep.model.any_oscillator import AnyOscillator
-from vibro_sweep.model.state import state
 from vibro_sweep.scene import Scene, Section
+from vibro_sweep.tables.coordinates import state
 from vibro_sweep.tables.outcomes import is_valid, status_of
 
 SAMPLES = 200  # in a forcing period

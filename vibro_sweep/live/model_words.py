@@ -9,14 +9,15 @@ from vibro_sweep.live.requests import View
 from vibro_sweep.live.views import SPEEDS, heights
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.catalogue import BY_NAME
+from vibro_sweep.model.checked_numbers import range_of
 from vibro_sweep.model.contact_laws.compliant import LAW as COMPLIANT
 from vibro_sweep.model.models import MODELS
-from vibro_sweep.model.parameters import NUMBER, POSITIVE, Parameter, range_of
 from vibro_sweep.model.stops import stop_of
 from vibro_sweep.plotting.style import CHAOS, EXPONENTS, LONGER, LONGEST, NO_PERIOD, PERIODS, density_colours
 from vibro_sweep.scene import Scene
 from vibro_sweep.tables.exponents import CERTAIN
 from vibro_sweep.tables.outcomes import NOT_COMPUTED, NOT_SETTLED, STATUSES
+from vibro_sweep.tables.quantity import NUMBER, POSITIVE, Parameter
 
 DECADE = 10.0
 LARGEST = sys.float_info.max

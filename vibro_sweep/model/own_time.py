@@ -10,7 +10,7 @@ import math
 import numpy as np
 
 from vibro_sweep.model.linear import Linear
-from vibro_sweep.model.observables import variables
+from vibro_sweep.tables.observables import variables
 from vibro_sweep.tables.units import power_of_seconds
 
 BY_RATE = {"C": 1, "omega": 1, "c_low": 1, "c_high": 1} | dict.fromkeys(

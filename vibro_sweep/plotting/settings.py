@@ -4,8 +4,8 @@ from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
-from vibro_sweep.model.parameters import FOLLOWING
 from vibro_sweep.tables.outcomes import VALID, status_of
+from vibro_sweep.tables.parameters import FOLLOWING
 
 Along = dict[str, tuple[tuple[str, ...], np.ndarray]]  # name -> the keys that a number depends on, its values
 

@@ -5,11 +5,11 @@ from matplotlib.collections import PolyCollection
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from vibro_sweep.model.branch_file import WINDOWS
 from vibro_sweep.plotting.decades import along_axis
 from vibro_sweep.plotting.ragged import RaggedFile
 from vibro_sweep.plotting.style import FAINT, SPECIAL, edges, special_mark, type_size
 from vibro_sweep.plotting.sweep_result import PlotError, Result
+from vibro_sweep.tables.file_columns import WINDOWS
 from vibro_sweep.tables.outcomes import REASONS, names
 
 HEIGHT = 1.5  # inches

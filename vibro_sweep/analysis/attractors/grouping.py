@@ -1,6 +1,6 @@
 """Which of several orbits of one system end on the same attractor, from what is known of each without the others.
 
-That is its period and seven averages (`averaged` of model/dimensions.py), which all orbits of an attractor share
+That is its period and seven averages (`averaged` of tables/observables.py), which all orbits of an attractor share
 whatever their phase. Mirror images (X -> -X, t -> t + T/2) share period and exponents; their section points, and so the
 averages of these, differ.
 """
