@@ -3,7 +3,7 @@
 import inspect
 import re
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
 import typer
@@ -13,22 +13,20 @@ from vibro_sweep import types
 from vibro_sweep.cli.commands import app
 from vibro_sweep.cli.console import EXIT_STATUSES
 from vibro_sweep.cli.examples import examples, purpose
-from vibro_sweep.model.bifurcations import CODIMENSION_TWO, CURVES, TYPES, WAYS, Bifurcation
-from vibro_sweep.model.branch_file import BRANCHES, CHART, WINDOWS, columns
 from vibro_sweep.model.catalogue import NUMBERS
-from vibro_sweep.model.curve_columns import OF_EDGES
-from vibro_sweep.model.dimensions import DIMENSIONS
+from vibro_sweep.model.contact_laws import STOP_NUMBERS
 from vibro_sweep.model.models import DEFAULT, MODELS
-from vibro_sweep.model.observables import SETTLE, VARIABLES, WORDS
-from vibro_sweep.model.outcomes import BRANCHES as OF_BRANCHES
-from vibro_sweep.model.outcomes import EDGES, ORBITS, POINTS, REASONS, Outcome
-from vibro_sweep.model.parameters import FOLLOWING, PARAMETERS, STOP_NUMBERS
-from vibro_sweep.model.state import INITIAL
-from vibro_sweep.model.status import STATUSES
-from vibro_sweep.model.trajectory_variables import TRAJECTORY
+from vibro_sweep.model.models.two_mass import PARAMETERS
 from vibro_sweep.model.wording import sentence
 from vibro_sweep.plotting import KINDS
 from vibro_sweep.scene import json_schema
+from vibro_sweep.tables.bifurcations import CODIMENSION_TWO, CURVES, TYPES, WAYS, Bifurcation
+from vibro_sweep.tables.coordinates import INITIAL
+from vibro_sweep.tables.file_columns import BRANCHES, CHART, OF_EDGES, WINDOWS, columns
+from vibro_sweep.tables.observables import DIMENSIONS, SETTLE, TRAJECTORY, VARIABLES, WORDS
+from vibro_sweep.tables.outcomes import BRANCHES as OF_BRANCHES
+from vibro_sweep.tables.outcomes import EDGES, NOT_COMPUTED, ORBITS, POINTS, REASONS, STATUSES, Outcome
+from vibro_sweep.tables.parameters import FOLLOWING
 
 NOTE = "<!-- made by `python docs/reference_pages.py docs/reference`; not edited by hand -->"
 SEVERAL = ("anyOf", "oneOf", "allOf")
@@ -226,7 +224,7 @@ def _words() -> Iterator[str]:
         word: [one.name for one in VARIABLES if word in one.asked_by and not one.at_impacts]
         for word in (*WORDS, TRAJECTORY, SETTLE)
     }
-    rows = [(f"`{word}`", one.text, listed(asked[word])) for word, one in WORDS.items()]
+    rows = [(f"`{word}`", text, listed(asked[word])) for word, text in WORDS.items()]
     yield from table(("word", "what is computed", "variables of the file"), rows)
     yield f"The key `{TRAJECTORY}` asks for the variables `{TRAJECTORY}_...`, `{SETTLE}` for {listed(asked[SETTLE])};"
     yield "`status` is always there.\n"
@@ -280,7 +278,8 @@ def statuses() -> Iterator[str]:
         "guessed, and a status says why.",
     )
     yield "## A point of a sweep (`status`)\n\nThe same names are the `status` of an orbit of `simulate`.\n"
-    yield from outcomes((f"`{one.name}` ({code})", one.text, one.advice) for code, one in STATUSES.items())
+    codes = enumerate(STATUSES, NOT_COMPUTED)
+    yield from outcomes((f"`{one.name}` ({code})", one.text, one.advice) for code, one in codes)
     yield from _named("An orbit of a sweep in no window (`orbit_reason`)", REASONS)
     yield from _named("A periodic orbit (`PeriodicOrbit.status`)", ORBITS)
     yield from _named("A branch (`Branch.status`, `branch_status`)", OF_BRANCHES)
@@ -299,15 +298,15 @@ def statuses() -> Iterator[str]:
     yield from table(("type", "meaning", "in pictures", "on which curves", "begins"), rows)
     yield from _named("An edge of a plane (`edge_reason`)", EDGES)
     yield "## Exit status of the program\n"
-    yield from outcomes((f"{code}", one.text, one.advice) for code, one in EXIT_STATUSES.items())
+    yield from outcomes(EXIT_STATUSES)
     yield "## Common messages\n"
     for part, advice in MESSAGES.items():
         yield f"- **... {part} ...**: {advice}"
 
 
-def _named(title: str, words: Mapping[str, Outcome]) -> Iterator[str]:
+def _named(title: str, found: Iterable[Outcome]) -> Iterator[str]:
     yield f"## {title}\n"
-    yield from outcomes((f"`{name}`", one.text, one.advice) for name, one in words.items())
+    yield from outcomes((f"`{one.name}`", one.text, one.advice) for one in found)
 
 
 def _uses(one: Bifurcation) -> str:

@@ -24,7 +24,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 RUN = str(ROOT / "tools" / "chosen_tests.py")
-ROOMS = ("analysis", "driver", "engine", "model")  # of the package
+ROOMS = ("analysis", "driver", "engine", "model", "tables")  # of the package
 FIRST = 40  # tests that are collected first
 CHANGES = {
     "+": ["-"], "-": ["+"], "*": ["/"], "/": ["*"], "//": ["/"], "+=": ["-="], "-=": ["+="], "*=": ["/="], "/=": ["*="],

@@ -72,7 +72,7 @@ if TYPE_CHECKING:
     from vibro_sweep.model.general import Oscillator
     from vibro_sweep.model.grazing import grazing
     from vibro_sweep.model.oscillator import System
-    from vibro_sweep.model.parameters import ParameterError
+    from vibro_sweep.model.refusals import ParameterError
     from vibro_sweep.plotting import PlotError
     from vibro_sweep.plotting.front import plot
     from vibro_sweep.scene import SceneError, load_scene
@@ -80,7 +80,7 @@ if TYPE_CHECKING:
 else:
     _HOME = {
         "Oscillator": "model.general",
-        "ParameterError": "model.parameters",
+        "ParameterError": "model.refusals",
         "PlotError": "plotting",
         "RunError": "driver.compute",
         "SceneError": "scene",

@@ -13,7 +13,7 @@ from support import slow_cases
 
 import vibro_sweep as vs
 from vibro_sweep.engine.free_flight import FreeFlight
-from vibro_sweep.model import status
+from vibro_sweep.tables import outcomes as status
 
 SYSTEMS = {
     "paper": dict(**naive.PAPER, tau=1.0, b=3.0),

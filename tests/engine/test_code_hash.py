@@ -133,7 +133,7 @@ def test_the_compiled_kernels_are_those_of_the_engine_alone(tmp_path):
     with (home / "scene" / "problems.py").open("a") as file:
         file.write("# another\n")
     assert folder() == jit.source_hash()
-    with (home / "model" / "status.py").open("a") as file:
+    with (home / "tables" / "outcomes.py").open("a") as file:
         file.write("# another\n")
     assert folder() != jit.source_hash()
 

@@ -5,7 +5,7 @@ import pytest
 from support import slow_cases, zero_exponents
 from support.frames import frame_of_one
 
-from vibro_sweep.model.exponents import sign_of
+from vibro_sweep.tables.exponents import sign_of
 
 
 @pytest.mark.parametrize("count", [20, *slow_cases(400)])

@@ -17,7 +17,7 @@ from vibro_sweep.engine import one_system
 from vibro_sweep.engine.motion import ensemble, impacts, orbits, scan, together
 from vibro_sweep.engine.simd.jit import exported
 from vibro_sweep.engine.tables import exclusion
-from vibro_sweep.model import status
+from vibro_sweep.tables import outcomes as status
 
 CHAIN = 8 * EPS  # of the largest term of x1 along the flight: rounding allowed from the section to the contact
 

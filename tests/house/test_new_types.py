@@ -19,7 +19,7 @@ branch = vs.continue_orbit(vs.periodic_orbit(system, itinerary="LR"), "b", (0.3,
 special = [(one.type, one.parameters["b"], float(one.orbit.impacts["v1"][0])) for one in branch.special]
 print(json.dumps([special, vs.__file__]))
 """
-TABLE, TESTS = "model/bifurcations.py", "engine/continuation/branch_tests.py"
+TABLE, TESTS = "tables/bifurcations.py", "engine/continuation/branch_tests.py"
 
 
 def special_points(folder, edits):

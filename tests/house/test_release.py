@@ -48,5 +48,5 @@ def test_links_of_contributing_lead_somewhere():
     ]
     for anchor in re.findall(r"architecture\.md#([\w-]+)", text):
         assert f"{anchor}\n" in headings, anchor
-    for path in re.findall(r"`((?:vibro_sweep|model|engine|analysis|plotting|tests|benchmarks)/[\w/.]*)`", text):
+    for path in re.findall(r"`((?:vibro_sweep|tables|model|engine|analysis|plotting|tests|benchmarks)/[\w/.]*)`", text):
         assert (ROOT / path).exists() or (ROOT / "vibro_sweep" / path).exists(), path

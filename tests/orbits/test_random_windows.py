@@ -15,7 +15,7 @@ from vibro_sweep.analysis.windows.job import Job, window_of
 from vibro_sweep.analysis.windows.rows import REASON_CODES
 from vibro_sweep.analysis.windows.window_search import WindowSearch
 from vibro_sweep.driver.windows import rows_in
-from vibro_sweep.model.outcomes import REASONS
+from vibro_sweep.tables.outcomes import REASONS
 
 # an impact damper, of which an asymmetric orbit is born at the upper end of a window, where a symmetric one loses its
 # symmetry; and one whose window ends at the symmetric orbit's own pitchfork
@@ -108,7 +108,7 @@ def test_an_orbit_without_a_window_of_its_own_is_in_the_one_that_covers_it(few):
     search.search(evaluate)
     ((row, i, j),) = refused
     assert search.rows[row].period[i, j] == 13 and search.window[row][i, j] >= 0
-    assert list(REASONS)[search.reason[row][i, j]] == "in_a_window"
+    assert REASONS[search.reason[row][i, j]].name == "in_a_window"
 
 
 @pytest.mark.slow

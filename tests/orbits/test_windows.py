@@ -10,8 +10,8 @@ import vibro_sweep as vs
 from vibro_sweep import store
 from vibro_sweep.analysis.windows.job import Job, window_of
 from vibro_sweep.driver.windows import rows_in
-from vibro_sweep.model.outcomes import REASONS
 from vibro_sweep.model.window_families import families
+from vibro_sweep.tables.outcomes import REASONS
 
 
 @pytest.fixture(scope="module")
@@ -21,7 +21,7 @@ def windows(few):  # noqa: F811
 
 def test_each_orbit_has_a_window_or_a_reason(few, windows):  # noqa: F811
     data = vs.open(few)
-    names = [list(REASONS)[code] for code in windows.reason.ravel()]
+    names = [REASONS[code].name for code in windows.reason.ravel()]
     assert ((windows.window >= 0) == (windows.reason == 0)).all()
     assert set(names) <= {"in_a_window", "chaos"}
     assert (windows.window.ravel()[data["period"].values > 0] >= 0).all()
@@ -68,7 +68,7 @@ def test_a_window_is_that_of_a_stable_orbit_which_the_state_lies_on():
     for b, part, reason in ((3.0, 1.0, "in_a_window"), (3.0, 0.99, "not_settled"), (5.0, 1.0, "not_settled")):
         orbit = vs.periodic_orbit(PAPER.replace(b=b), itinerary="LR")
         job = Job(orbit.system, part * orbit.state, 1, "b", (0.98 * b, 1.02 * b))
-        assert orbit.stable == (b < 3.89) and list(REASONS)[int(window_of(job).get("reason", 0))] == reason
+        assert orbit.stable == (b < 3.89) and REASONS[int(window_of(job).get("reason", 0))].name == reason
 
 
 def test_free_motion(windows):
@@ -116,7 +116,7 @@ def test_a_rest_after_one_impact_is_no_window_in_the_restitution(tmp_path):
     axes = {"R": [0.0, 0.02, 0.2, 0.4]}
     vs.sweep(SYSTEM.replace(b=1.2), axes, transient=600, record=60, output=tmp_path / "R.h5", workers=1)
     windows = vs.windows(tmp_path / "R.h5")
-    assert [list(REASONS)[code] for code in windows.reason.ravel()] == ["sticking", "sticking", *2 * ["in_a_window"]]
+    assert [REASONS[code].name for code in windows.reason.ravel()] == ["sticking", "sticking", *2 * ["in_a_window"]]
     assert [(window.itinerary, window.orbit.sticking.size) for window in windows] == [("LLRR", 0), ("LR", 0)]
     assert min(window.lo for window in windows) > 0.1
 

@@ -7,7 +7,7 @@ import numpy as np
 from support.drawn_branches import MOST_IMPACTS, Case, drawn_number, drawn_oscillator, recorded
 from support.same_branch import TooLongError, differences, follow, listed
 from vibro_sweep.analysis.branches.branch_arrays import arrays_of
-from vibro_sweep.model.bifurcations import BY_NAME
+from vibro_sweep.tables.bifurcations import BY_NAME
 
 MODELS = ("two_mass", "one_mass", "chain", "linear")
 BY_FORCE = 1000  # seeds from there on have `release: force`

@@ -15,7 +15,7 @@ from vibro_sweep.engine.motion.orbits import new_records
 from vibro_sweep.engine.one_system import Engine
 from vibro_sweep.engine.points import MOTION
 from vibro_sweep.engine.simd.lanes import LANES
-from vibro_sweep.model import status
+from vibro_sweep.tables import outcomes as status
 
 MASSES = (1, 2, 3)
 BATCH = {1: 4000, 2: 400, 3: 400}  # flights drawn for an oscillator

@@ -13,7 +13,7 @@ from support.drawn_oscillators import drawn
 from support.searching import Report, new_report
 from vibro_sweep.engine.one_system import Engine
 from vibro_sweep.engine.simd.lanes import LANES
-from vibro_sweep.model import status
+from vibro_sweep.tables import outcomes as status
 
 MASSES = (1, 2, 3, 4, 5, 8)
 BATCH = 4000  # flights drawn for an oscillator: some end behind a stop where they should begin

@@ -12,7 +12,7 @@ import numpy as np
 import vibro_sweep as vs
 from support import ROOT
 from support.scene_texts import parsed
-from vibro_sweep.model.status import VALID
+from vibro_sweep.tables.outcomes import VALID
 
 SCENES = ROOT / "configs" / "paper"
 FIGURES = {  # scene: the kind of picture that the paper shows, and what else is worth a look

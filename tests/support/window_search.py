@@ -19,7 +19,7 @@ from vibro_sweep.analysis.periodic.periodic_orbit import orbit_of
 from vibro_sweep.analysis.windows.job import Job, lies_on, window_of
 from vibro_sweep.analysis.windows.members import solution_in
 from vibro_sweep.driver.windows import rows_in
-from vibro_sweep.model.outcomes import REASONS
+from vibro_sweep.tables.outcomes import REASONS
 
 NEAR_ENDS = (1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12)  # shares of a window from its ends
 CLOSE = 1e-9  # of the range: ends of one window differ by less
@@ -180,7 +180,7 @@ def other_starts(report, wrong, window, bounds) -> None:
             min(share, 1 - share) <= 1e-6
         )  # there Newton's method may find no orbit, and WindowSearch takes it back
         if "reason" in result:
-            reason = list(REASONS)[int(result["reason"])]
+            reason = REASONS[int(result["reason"])].name
             report.counted[f"starts {reason}"] += 1
             if not beside:
                 wrong(f"start in the window: {reason}", words)
@@ -209,7 +209,7 @@ def covered(report, wrong, data, windows, name) -> None:
     ]
     values = data[name].values
     for place in np.argwhere(period > 0).tolist():
-        reason = list(REASONS)[int(windows.reason[tuple(place)])]
+        reason = REASONS[int(windows.reason[tuple(place)])].name
         report.counted[f"periodic: {reason}"] += 1
         if reason in EXPLAINED:
             continue

@@ -42,7 +42,7 @@ def unfit(tmp_path_factory):
     lacking, other = tmp_path_factory.mktemp("lacking"), tmp_path_factory.mktemp("other")
     (lacking / "sitecustomize.py").write_text(BLOCKER)
     shutil.copytree(PACKAGE, other / "vibro_sweep", ignore=shutil.ignore_patterns("__pycache__"))
-    with (other / "vibro_sweep" / "model" / "status.py").open("a") as file:
+    with (other / "vibro_sweep" / "tables" / "outcomes.py").open("a") as file:
         file.write("# other\n")
     return {"lacking": str(lacking), "other": str(other)}
 

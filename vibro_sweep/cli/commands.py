@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from vibro_sweep.model.picture_kinds import PICTURES
+from vibro_sweep.tables.picture_kinds import PICTURES
 
 from . import interrupt
 from .computing import Computation, compute, compute_windows
@@ -19,7 +19,7 @@ from .usage import called
 
 app = typer.Typer(
     help="Parameter sweeps of linear oscillators with impacts, with Lyapunov exponents.",
-    epilog=f"Exit status: {'; '.join(f'{code} {one.text}' for code, one in EXIT_STATUSES.items())}.",
+    epilog=f"Exit status: {'; '.join(f'{one.name} {one.text}' for one in EXIT_STATUSES)}.",
     no_args_is_help=True,
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
@@ -254,7 +254,7 @@ def models(
     """What oscillators and laws of contact there are; of one the equations, a sketch, its numbers."""
     from vibro_sweep.model.contact_laws import LAWS
     from vibro_sweep.model.models import model_named
-    from vibro_sweep.model.parameters import ParameterError
+    from vibro_sweep.model.refusals import ParameterError
 
     from .summaries import law_text, model_list, model_text
 

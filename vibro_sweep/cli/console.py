@@ -10,28 +10,31 @@ import traceback
 from collections.abc import Callable, Iterator
 
 from vibro_sweep.engine import simd
-from vibro_sweep.model.outcomes import Outcome
+from vibro_sweep.tables.outcomes import Outcome
 
 LONGEST_WORD = 300  # letters of what stands on a command line, in a message
 
 BAD_POINTS, BAD_INPUT, INTERNAL, INTERRUPTED = 1, 2, 70, 130
 
-EXIT_STATUSES = {
-    0: Outcome("done"),
-    BAD_POINTS: Outcome(
+EXIT_STATUSES = (
+    Outcome("0", "done"),
+    Outcome(
+        f"{BAD_POINTS}",
         "done, but some points have a bad status",
         "The summary counts them by status and says what to do. The other points are valid.",
     ),
-    BAD_INPUT: Outcome(
+    Outcome(
+        f"{BAD_INPUT}",
         "the input is wrong, or the machine cannot do what is needed",
         "The message names the key or the file, the value and what is allowed.",
     ),
-    INTERNAL: Outcome("an internal error, which is a bug", "Please report the traceback below the message."),
-    INTERRUPTED: Outcome(
+    Outcome(f"{INTERNAL}", "an internal error, which is a bug", "Please report the traceback below the message."),
+    Outcome(
+        f"{INTERRUPTED}",
         "interrupted, also while the program is still loading or compiling",
         "`--resume` continues. A second Ctrl-C changes nothing.",
     ),
-}
+)
 
 
 class InputError(ValueError):

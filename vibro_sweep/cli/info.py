@@ -10,14 +10,13 @@ import h5py
 import numpy as np
 
 from vibro_sweep.cli.ragged_tables import curves_table, special_table, windows_table
-from vibro_sweep.model.branch_file import CHART, WINDOWS
-from vibro_sweep.model.exponents import CERTAIN, periods_to_go, sign_of
-from vibro_sweep.model.observables import GAP
-from vibro_sweep.model.outcomes import REASONS
-from vibro_sweep.model.status import NOT_COMPUTED, NOT_SETTLED, STATUSES, VALID, meaning
 from vibro_sweep.store import checks
 from vibro_sweep.store.attributes import is_flat, quantities_of, text, texts
 from vibro_sweep.store.opening import REMEDY, ForeignError, StoreError, opened
+from vibro_sweep.tables.exponents import CERTAIN, periods_to_go, sign_of
+from vibro_sweep.tables.file_columns import CHART, WINDOWS
+from vibro_sweep.tables.observables import GAP
+from vibro_sweep.tables.outcomes import NOT_COMPUTED, NOT_SETTLED, REASONS, VALID, named, status_of
 
 # datasets of a sweep that are read
 ACCURACY = ("status", "lyapunov", "lyapunov_error", "lyapunov_residual", "contact_error", "min_impact_speed")
@@ -127,13 +126,12 @@ def _progress(file: h5py.File) -> list[str]:
     """Done, missing and failed."""
     counts, total = checks.statuses(file), file["status"].size
     done = counts.total() - counts[NOT_COMPUTED]
-    failed = {code: count for code, count in sorted(counts.items()) if code not in (*VALID, NOT_COMPUTED)}
-    advice = {code: f"\n    {STATUSES[code].advice}" if code in STATUSES else "" for code in failed}
+    failed = {status_of(code): count for code, count in sorted(counts.items()) if code not in (*VALID, NOT_COMPUTED)}
     return [
         f"computed     {done:,} of {total:,} orbits ({100 * done / total:.4g} %)",
         f"missing      {total - done:,}",
         f"failed       {sum(failed.values()):,}",
-        *(f"  {meaning(code)}: {count:,}{advice[code]}" for code, count in failed.items()),
+        *(f"  {one.name}: {count:,}" + f"\n    {one.advice}" * bool(one.advice) for one, count in failed.items()),
         *([f"not settled  {counts[NOT_SETTLED]:,}{_to_go(file)}"] if counts[NOT_SETTLED] else []),
     ]
 
@@ -167,7 +165,7 @@ def _turning(file: h5py.File) -> list[str]:
 
     with contextlib.suppress(ValueError):  # there is no text of what a function made
         if turns(parse_scene(text(file, "scene")).system.linear):
-            return [f"turning      {without:,} orbits: {REASONS['turning'].text}"]
+            return [f"turning      {without:,} orbits: {named(REASONS, 'turning').text}"]
     return []
 
 

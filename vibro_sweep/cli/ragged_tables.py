@@ -5,11 +5,11 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from vibro_sweep.model.bifurcations import CODIMENSION_TWO, CRITICALITIES, CURVES, KINDS, TYPES
-from vibro_sweep.model.outcomes import EDGES, REASONS
-from vibro_sweep.model.window_columns import UNVISITED
 from vibro_sweep.model.window_families import families
 from vibro_sweep.model.wording import without_rounding
+from vibro_sweep.tables.bifurcations import CODIMENSION_TWO, CRITICALITIES, CURVES, KINDS, TYPES
+from vibro_sweep.tables.file_columns import UNVISITED
+from vibro_sweep.tables.outcomes import EDGES, REASONS
 
 LONGEST_WORD = 12  # letters of an itinerary that is printed as it is
 
@@ -30,8 +30,7 @@ def windows_table(arrays: Mapping, parameter: str) -> list[str]:
     lines.append("ends         " + _counted(named))
     reasons = np.asarray(arrays["orbit_reason"])
     codes, numbers = np.unique(reasons, return_counts=True)
-    names = list(REASONS)
-    found = {names[code]: int(count) for code, count in zip(codes.tolist(), numbers.tolist(), strict=True)}
+    found = {REASONS[code].name: int(count) for code, count in zip(codes.tolist(), numbers.tolist(), strict=True)}
     covered = found.pop("in_a_window", 0)
     lines.append(f"orbits       {covered:,} of {reasons.size:,} in windows" + (f"; {_counted(found)}" if found else ""))
     return [*lines, *_families(arrays), *_unvisited(arrays, parameter)]
@@ -83,7 +82,7 @@ def curves_table(arrays: Mapping, parameters: list[str]) -> list[str]:
     if "edge_reason" not in arrays:
         return told
     codes = Counter(np.asarray(arrays["edge_reason"]).tolist())
-    found = {list(EDGES)[code]: count for code, count in sorted(codes.items())}
+    found = {EDGES[code].name: count for code, count in sorted(codes.items())}
     return [*told, f"edges        {sum(found.values()):,} between points of different periods: {_counted(found)}"]
 
 

@@ -12,9 +12,9 @@ from vibro_sweep.model.grazing import Grazing, grazing
 from vibro_sweep.model.linear import static_state
 from vibro_sweep.model.models import MODELS
 from vibro_sweep.model.models.declaration import Model, Option
-from vibro_sweep.model.parameters import Parameter
-from vibro_sweep.model.state import state as names
-from vibro_sweep.model.status import STATUSES
+from vibro_sweep.tables.coordinates import state as names
+from vibro_sweep.tables.outcomes import STATUSES
+from vibro_sweep.tables.quantity import Parameter
 
 if TYPE_CHECKING:
     from vibro_sweep.driver.cost import Estimate
@@ -149,7 +149,7 @@ def summary(output: Path, report: "RunReport") -> str:
     state += f"; {unsettled:,} not settled yet: `settle`, or a longer record, may tell" if unsettled else ""
     if not report.computed:
         return f"{output} is complete already, from the same scene: {points(report.points)}, {state}"
-    advice = [f"\n{one.name}: {one.advice}" for one in STATUSES.values() if one.name in bad]
+    advice = [f"\n{one.name}: {one.advice}" for one in STATUSES if one.name in bad]
     return f"{output}: {points(report.points)} in {duration(report.seconds)}, {state}{''.join(advice)}"
 
 

@@ -12,11 +12,11 @@ from vibro_sweep.engine import points
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.variational.spectrum import BATCHES
 from vibro_sweep.model.any_oscillator import AnyOscillator
-from vibro_sweep.model.exponents import RUNNING
 from vibro_sweep.model.grid import grid
-from vibro_sweep.model.observables import WORDS
 from vibro_sweep.scene import Scene
 from vibro_sweep.store import quantities
+from vibro_sweep.tables.exponents import RUNNING
+from vibro_sweep.tables.observables import WITH_STATES, WITH_TANGENTS
 
 
 class Block(NamedTuple):
@@ -79,13 +79,13 @@ def version() -> str:
 def plan_of(scene: Scene) -> points.Plan:
     """The plan of a scene, for the kernels."""
     side = {"right": 1.0, "left": -1.0}[scene.section.stop]
-    lyapunov = any(WORDS[word].tangents for word in scene.observe)
+    lyapunov = not WITH_TANGENTS.isdisjoint(scene.observe)
     return points.Plan(
         transient=scene.transient,
         record=scene.record,
         warm_up=min(scene.transient, points.WARM_UP) if lyapunov else 0,
         settle=scene.settle or 0,
-        states=scene.settle is not None or any(WORDS[word].states for word in scene.observe),
+        states=scene.settle is not None or not WITH_STATES.isdisjoint(scene.observe),
         lyapunov=lyapunov,
         impacts="impacts" in scene.observe,
         contacts="contacts" in scene.observe,

@@ -5,7 +5,7 @@ import numpy as np
 from vibro_sweep.driver.blocks import Block
 from vibro_sweep.model.grid import linears
 from vibro_sweep.model.linear import rest_state
-from vibro_sweep.model.state import start
+from vibro_sweep.tables.coordinates import start
 
 ATTEMPTS = 100  # at a state with the gap between the stops
 

@@ -7,10 +7,10 @@ from vibro_sweep.engine import points
 from vibro_sweep.engine.records import Kind
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.tables.flight import WIDTH
-from vibro_sweep.model import status
 from vibro_sweep.model.grid import linears
 from vibro_sweep.model.stacks import dot, solved
-from vibro_sweep.model.state import state
+from vibro_sweep.tables import outcomes as status
+from vibro_sweep.tables.coordinates import state
 
 ROOM = 64  # impacts of a period there is room for at first
 MOST_ROOM = 8**4 * ROOM  # which takes 0.4 GB

@@ -9,19 +9,19 @@ from vibro_sweep.analysis.branches.branch_arrays import SHAPES, Arrays
 from vibro_sweep.analysis.branches.branch_search import Branches, compute_branch
 from vibro_sweep.analysis.branches.search import Node
 from vibro_sweep.driver.jobs import computed
-from vibro_sweep.driver.joining import joined
+from vibro_sweep.driver.joining import columns_in_file, joined
 from vibro_sweep.driver.origins import seeds_of
 from vibro_sweep.driver.usable import is_branch
-from vibro_sweep.model.branch_file import BRANCHES, columns_of
-from vibro_sweep.model.column import Column
-from vibro_sweep.model.state import state
 from vibro_sweep.scene import Continuation
 from vibro_sweep.store.writing import Writer
+from vibro_sweep.tables.coordinates import state
+from vibro_sweep.tables.file_columns import BRANCHES
+from vibro_sweep.tables.quantity import Quantity
 
 
 def followed_branches(
     scene: Continuation, pool: Executor | None, file: Writer, progress: Callable[[int, int], None] | None
-) -> tuple[list[Column], Arrays]:
+) -> tuple[list[Quantity], Arrays]:
     """Raises NoOrbitError where the scene's first orbit does not exist. progress(done, total) counts branches."""
     names, masses = list(scene.parameter), scene.system.masses
     evaluate = computed(compute_branch, is_branch, pool, file, progress)
@@ -32,7 +32,7 @@ def followed_branches(
     together = np.concatenate(sections) if sections else np.zeros((0, 2 * masses))
     arrays |= {f"section_{name}": together[:, i] for i, name in enumerate(state(masses))}
     arrays["branch_sections"] = np.array([node.arrays["section"].shape[1] for node in found], int)
-    return columns_of(BRANCHES, names, scene.system), arrays | where_met(found, arrays["branch_special"])
+    return columns_in_file(BRANCHES, names, scene.system), arrays | where_met(found, arrays["branch_special"])
 
 
 def where_met(found: list[Node], counts: np.ndarray) -> dict[str, np.ndarray]:

@@ -16,16 +16,15 @@ from vibro_sweep.analysis.windows.edges import Plane
 from vibro_sweep.analysis.windows.explained import explain, probe
 from vibro_sweep.driver.followed_branches import where_met
 from vibro_sweep.driver.jobs import computed
-from vibro_sweep.driver.joining import joined
+from vibro_sweep.driver.joining import columns_in_file, joined
 from vibro_sweep.driver.origins import seeds_of, specials_of
 from vibro_sweep.driver.swept_plane import edges_in_file
 from vibro_sweep.driver.usable import is_branch, is_curve, is_probe
-from vibro_sweep.model.branch_file import CHART, columns_of
-from vibro_sweep.model.column import Column
-from vibro_sweep.model.curve_columns import OF_EDGES
 from vibro_sweep.scene import Continuation
 from vibro_sweep.scene.continuation import BY_BRANCHES
 from vibro_sweep.store.writing import Writer
+from vibro_sweep.tables.file_columns import CHART, OF_EDGES
+from vibro_sweep.tables.quantity import Quantity
 
 
 def followed_curves(
@@ -34,7 +33,7 @@ def followed_curves(
     pool: Executor | None,
     file: Writer,
     progress: Callable[[int, int], None] | None,
-) -> tuple[list[Column], Arrays]:
+) -> tuple[list[Quantity], Arrays]:
     """Raises NoOrbitError where there is no orbit to begin with. progress(done, total) counts branches, then curves.
 
     of_plane : the plane whose edges are explained (swept_plane.py), if the scene begins from one
@@ -49,7 +48,7 @@ def followed_curves(
         starts = _starts(scene, names, bounds, pool, file, progress)
         curves = Curves(names, bounds, scene.of).run(starts, scene.depth, evaluate)
     arrays = joined([one.arrays for one in curves], SHAPES, list(names), scene.system.masses)
-    columns = columns_of(CHART, list(names), scene.system, OF_EDGES if more else ())
+    columns = columns_in_file(CHART, list(names), scene.system, OF_EDGES if more else ())
     return columns, arrays | where_met(curves, arrays["branch_special"]) | more
 
 

@@ -16,9 +16,9 @@ from vibro_sweep.model.files import file_to_write
 from vibro_sweep.model.oscillator import checked_system
 from vibro_sweep.model.real import number_of
 from vibro_sweep.model.refusals import not_allowed
-from vibro_sweep.model.state import START
 from vibro_sweep.scene import Section, Start, Trajectory, scene_of
 from vibro_sweep.scene.written import axis_data, changed
+from vibro_sweep.tables.coordinates import START
 
 if TYPE_CHECKING:
     import numpy as np

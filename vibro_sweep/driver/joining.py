@@ -6,12 +6,31 @@ columns with names.
 """
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
-from vibro_sweep.model.state import state
+from vibro_sweep.model.any_oscillator import AnyOscillator
+from vibro_sweep.tables.coordinates import state
+from vibro_sweep.tables.file_columns import OF_FIRST, OF_PARAMETER, columns
+from vibro_sweep.tables.quantity import Quantity
+from vibro_sweep.tables.units import unit_in
 
 Arrays = dict[str, np.ndarray]
+
+
+def columns_in_file(
+    kind: str, parameters: list[str], system: AnyOscillator, more: tuple[Quantity, ...] = ()
+) -> list[Quantity]:
+    """All variables of a file, and more, in the units of a system."""
+    of_each = {name: system.described[name].units for name in parameters}
+    first, *others = of_each.values()
+    common = {OF_FIRST: first, OF_PARAMETER: first if all(one == first for one in others) else "1"}
+
+    def unit(column: Quantity) -> str:
+        return unit_in(of_each.get(column.name) or common.get(column.units, column.units), system.units)
+
+    return [replace(one, units=unit(one)) for one in (*columns(kind, parameters, system.masses), *more)]
 
 
 def joined(

@@ -16,10 +16,9 @@ from vibro_sweep.analysis.windows.members import solution_in
 from vibro_sweep.analysis.windows.unvisited import Unvisited
 from vibro_sweep.analysis.windows.window import Window, Windows
 from vibro_sweep.driver.any_file import first_bytes
-from vibro_sweep.driver.joining import part_of
+from vibro_sweep.driver.joining import columns_in_file, part_of
 from vibro_sweep.driver.saved_results import ONE, Saved
 from vibro_sweep.driver.source_file import computed_from
-from vibro_sweep.model.branch_file import CHART, SWEEP, WINDOWS, columns_of
 from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.files import checked_path
 from vibro_sweep.scene import parse_continuation, parse_scene
@@ -27,6 +26,7 @@ from vibro_sweep.store import StoreError
 from vibro_sweep.store.arrays import Contents
 from vibro_sweep.store.creating import Subject
 from vibro_sweep.store.ragged_files import RaggedContents
+from vibro_sweep.tables.file_columns import CHART, SWEEP, WINDOWS
 
 HDF5 = (b"\x89HDF", b"\x89vibro_sweep")  # with which such files, and the parts of runs, begin
 Arrays = dict[str, np.ndarray]
@@ -113,7 +113,7 @@ def _windows(data: Contents, arrays: Arrays, names: list[str]) -> Windows:
     about = ("sweep", "parameter", "sweep_shape", *chosen)
     attributes = {name: data.attrs[name] for name in about} | {"parameters": names}
     subject = Subject(WINDOWS, str(data.attrs["title"]).removeprefix("vibro_sweep: "), data.attrs["scene"], attributes)
-    result._contents_of_file = partial(RaggedContents, subject, columns_of(WINDOWS, names, system), arrays)
+    result._contents_of_file = partial(RaggedContents, subject, columns_in_file(WINDOWS, names, system), arrays)
     return result
 
 

@@ -27,13 +27,13 @@ from vibro_sweep.driver.joining import part_of
 from vibro_sweep.driver.source_file import SourceError
 from vibro_sweep.driver.windows import rows_in, search_of
 from vibro_sweep.model.any_oscillator import AnyOscillator
-from vibro_sweep.model.bifurcations import CURVES, WAYS
-from vibro_sweep.model.branch_file import CHART, SWEEP, WINDOWS
-from vibro_sweep.model.outcomes import ORBITS
 from vibro_sweep.model.refusals import cut, shown
 from vibro_sweep.scene import Continuation, parse_continuation, parse_scene
 from vibro_sweep.store.arrays import Contents
 from vibro_sweep.store.writing import Writer
+from vibro_sweep.tables.bifurcations import CURVES, WAYS
+from vibro_sweep.tables.file_columns import CHART, SWEEP, WINDOWS
+from vibro_sweep.tables.outcomes import ORBITS, named
 
 
 class NoOrbitError(SourceError):
@@ -157,7 +157,7 @@ def _chosen(scene: Continuation, search: WindowSearch) -> list[RowWindow]:
 
 def _one(orbit: PeriodicOrbit, scene: Continuation) -> PeriodicOrbit:
     if not orbit.ok:
-        raise NoOrbitError(f"continue.from.{scene.origin}: no orbit was found; {ORBITS[orbit.status].text}")
+        raise NoOrbitError(f"continue.from.{scene.origin}: no orbit was found; {named(ORBITS, orbit.status).text}")
     return orbit
 
 

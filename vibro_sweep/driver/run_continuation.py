@@ -12,11 +12,11 @@ from vibro_sweep.driver.origins import NoOrbitError, attributes_of, source_of
 from vibro_sweep.driver.provenance import provenance
 from vibro_sweep.driver.source_file import computed_from_source
 from vibro_sweep.driver.swept_plane import plane_of
-from vibro_sweep.model.branch_file import BRANCHES, CHART
 from vibro_sweep.model.files import file_to_write
 from vibro_sweep.scene import Continuation
 from vibro_sweep.store.creating import Subject
 from vibro_sweep.store.ragged_files import RaggedContents
+from vibro_sweep.tables.file_columns import BRANCHES, CHART
 
 
 def run_continuation(

@@ -14,20 +14,20 @@ from vibro_sweep.analysis.branches.branch import Branch
 from vibro_sweep.analysis.curves import curve_arrays
 from vibro_sweep.analysis.curves.bifurcation_curve import BifurcationCurve
 from vibro_sweep.analysis.windows.window import Windows
-from vibro_sweep.driver.joining import joined
+from vibro_sweep.driver.joining import columns_in_file, joined
 from vibro_sweep.driver.origins import Source, attributes_of
 from vibro_sweep.driver.provenance import provenance
 from vibro_sweep.model.any_oscillator import AnyOscillator
-from vibro_sweep.model.bifurcations import CURVES
-from vibro_sweep.model.branch_file import BRANCHES, CHART, columns_of
 from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.files import ExistingFileError, file_to_write
 from vibro_sweep.model.linear import Family
-from vibro_sweep.model.parameters import ParameterError
-from vibro_sweep.model.state import state
+from vibro_sweep.model.refusals import ParameterError
 from vibro_sweep.scene import Continuation
 from vibro_sweep.store.creating import Subject
 from vibro_sweep.store.ragged_files import RaggedContents
+from vibro_sweep.tables.bifurcations import CURVES
+from vibro_sweep.tables.coordinates import state
+from vibro_sweep.tables.file_columns import BRANCHES, CHART
 
 if TYPE_CHECKING:
     import xarray
@@ -77,7 +77,7 @@ def contents_of_file(result: Saved) -> RaggedContents:
     attributes = attributes_of(scene, Source(scene.system, "")) | {ONE: type(result).__name__}
     subject = Subject(kind, f"{type(result).__name__} in {', '.join(names)}", scene.to_yaml(), attributes)
     return RaggedContents(
-        subject, columns_of(kind, names, system), joined([arrays], shapes, names, system.masses) | none | more
+        subject, columns_in_file(kind, names, system), joined([arrays], shapes, names, system.masses) | none | more
     )
 
 

@@ -34,10 +34,10 @@ from vibro_sweep.engine.halting import heed, interruptible, new_halt
 from vibro_sweep.model.arguments import check_call
 from vibro_sweep.model.errors import ArgumentError, ArgumentTypeError
 from vibro_sweep.model.refusals import not_allowed
-from vibro_sweep.model.status import VALID, meaning
 from vibro_sweep.scene import Scene
 from vibro_sweep.store.beginning import check_mode
 from vibro_sweep.store.datasets import write_following
+from vibro_sweep.tables.outcomes import VALID, status_of
 
 _log = logging.getLogger("vibro_sweep")
 
@@ -113,7 +113,7 @@ def run_sweep(
 
 def _report(total: int, statuses: dict[int, int], seconds: float, computed: int) -> RunReport:
     bad = sum(number for code, number in statuses.items() if code not in VALID)
-    named = {meaning(code): number for code, number in statuses.items()}
+    named = {status_of(code).name: number for code, number in statuses.items()}
     return RunReport(total, bad, named, seconds, computed)
 
 

@@ -12,10 +12,10 @@ from vibro_sweep import store
 from vibro_sweep.analysis.windows.rows import Contents
 from vibro_sweep.driver.source_file import SourceError, computed_from
 from vibro_sweep.model.arguments import check_type
-from vibro_sweep.model.branch_file import SWEEP
 from vibro_sweep.model.built import BUILD
 from vibro_sweep.model.files import checked_path
 from vibro_sweep.scene import parse_scene
+from vibro_sweep.tables.file_columns import SWEEP
 
 if TYPE_CHECKING:
     import xarray

@@ -11,8 +11,8 @@ from vibro_sweep.analysis.windows.explained import Explained
 from vibro_sweep.analysis.windows.rows import check_data
 from vibro_sweep.driver.source_file import SourceError
 from vibro_sweep.model.refusals import cut
-from vibro_sweep.model.state import state
 from vibro_sweep.scene import Continuation, parse_scene
+from vibro_sweep.tables.coordinates import state
 
 
 def plane_of(scene: Continuation) -> tuple[Plane, np.ndarray, Any] | None:

@@ -5,8 +5,8 @@ import numpy as np
 from vibro_sweep.driver.blocks import Block
 from vibro_sweep.driver.energy_columns import at_contact
 from vibro_sweep.engine.points import Workspace
-from vibro_sweep.model.observables import of_an_impact
-from vibro_sweep.model.state import state
+from vibro_sweep.tables.coordinates import state
+from vibro_sweep.tables.observables import of_an_impact
 
 ROOM = 4096  # impacts there is room for at first
 

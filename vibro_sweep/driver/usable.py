@@ -10,9 +10,9 @@ import numpy as np
 from vibro_sweep.analysis.branches import branch_arrays as branches
 from vibro_sweep.analysis.branches import seeds
 from vibro_sweep.analysis.curves import curve_arrays as curves
-from vibro_sweep.model.branch_file import CHART, WINDOWS, columns
-from vibro_sweep.model.column import Column
-from vibro_sweep.model.outcomes import EDGES, REASONS
+from vibro_sweep.tables.file_columns import CHART, WINDOWS, columns
+from vibro_sweep.tables.outcomes import EDGES, REASONS
+from vibro_sweep.tables.quantity import Quantity
 
 Arrays = Mapping[str, np.ndarray]
 
@@ -43,7 +43,7 @@ def is_probe(piece: Arrays) -> bool:
     return _fits(piece, shapes, []) and 0 <= piece["reason"] < len(EDGES) and seeds.fit_together(piece)
 
 
-def _fits(piece: Arrays, shapes: Mapping[str, str], known: Iterable[Column]) -> bool:
+def _fits(piece: Arrays, shapes: Mapping[str, str], known: Iterable[Quantity]) -> bool:
     """Whether a piece has these arrays and no others, of lengths that agree, and indices and codes that there are."""
     lengths = {"2": 2, "4": 4}
     names = {name: dimensions.split() for dimensions, words in shapes.items() for name in words.split()}

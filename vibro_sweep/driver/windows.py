@@ -17,22 +17,21 @@ from vibro_sweep.analysis.windows.unvisited import unvisited_in
 from vibro_sweep.analysis.windows.window import Windows, in_file_order, windows_of
 from vibro_sweep.analysis.windows.window_search import WindowSearch
 from vibro_sweep.driver.jobs import computed, workers_of
-from vibro_sweep.driver.joining import joined
+from vibro_sweep.driver.joining import columns_in_file, joined
 from vibro_sweep.driver.progress import given_or_bar
 from vibro_sweep.driver.provenance import provenance
 from vibro_sweep.driver.sweep import check_how
 from vibro_sweep.driver.swept import contents_of
 from vibro_sweep.driver.usable import is_window
 from vibro_sweep.model.arguments import check_type
-from vibro_sweep.model.branch_file import WINDOWS, columns_of
 from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.files import checked_path, file_to_write
 from vibro_sweep.model.refusals import not_allowed
-from vibro_sweep.model.state import state
-from vibro_sweep.model.window_columns import UNVISITED
 from vibro_sweep.scene import parse_scene
 from vibro_sweep.store.creating import Subject
 from vibro_sweep.store.ragged_files import RaggedContents
+from vibro_sweep.tables.coordinates import state
+from vibro_sweep.tables.file_columns import UNVISITED, WINDOWS
 
 if TYPE_CHECKING:
     import xarray
@@ -196,7 +195,7 @@ def _contents(search: WindowSearch) -> tuple:
         "orbit_reason": reason.ravel(),
     }
     arrays |= _unvisited(search, masses)
-    return columns_of(WINDOWS, names, first.system), arrays
+    return columns_in_file(WINDOWS, names, first.system), arrays
 
 
 def _unvisited(search: WindowSearch, masses: int) -> dict[str, np.ndarray]:

@@ -18,8 +18,8 @@ import numpy as np
 
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.two_modes import look_for_two_modes
-from vibro_sweep.model import exponents
-from vibro_sweep.model.exponents import ARRIVED
+from vibro_sweep.tables import exponents
+from vibro_sweep.tables.exponents import ARRIVED
 
 REPEAT = 1e-6  # section points this near to each other, relative to their size, are the same point
 ROUNDING = 1e-10  # relative distance that rounding may leave of it, where motion forgets it

@@ -21,7 +21,7 @@ from vibro_sweep.engine.quadrature import NODES, PLACES, WEIGHTS
 from vibro_sweep.engine.simd.jit import exported, inline, jit
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.trajectory import hold
-from vibro_sweep.model import status
+from vibro_sweep.tables import outcomes as status
 
 STEPS = 16  # of 0 .. 1, and one beyond on each side, at whose ends the polynomial is looked at for an extreme
 TO_POWERS = np.ascontiguousarray(np.linalg.inv(np.vander(PLACES, NODES)))  # from values there, highest power first

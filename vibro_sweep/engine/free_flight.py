@@ -22,7 +22,7 @@ class Contacts(NamedTuple):
 
     elapsed: np.ndarray  # (n,) time from the start; infinite where there is none, NaN where the status is not 0
     side: np.ndarray  # (n,) int8: of the stop; 0 where there is none
-    status: np.ndarray  # (n,) int8, codes of model/status.py
+    status: np.ndarray  # (n,) int8, codes of tables/outcomes.py
 
 
 class Extremes(NamedTuple):

@@ -28,8 +28,9 @@ from vibro_sweep.engine.variational.spectrum import (
     periods_read,
     time_average,
 )
-from vibro_sweep.model import exponents, status
-from vibro_sweep.model.exponents import LEAST_RECORD
+from vibro_sweep.tables import exponents
+from vibro_sweep.tables import outcomes as status
+from vibro_sweep.tables.exponents import LEAST_RECORD
 
 TRANSIENT, WARM_UP, RECORD, FLOQUET, PHASES = 0, 1, 2, 3, 6
 

@@ -14,18 +14,19 @@ from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.tables import cells
 from vibro_sweep.engine.tables.flight import Flight
 from vibro_sweep.engine.variational.spectrum import BATCHES
-from vibro_sweep.model import status
 from vibro_sweep.model.arguments import checked_state
 from vibro_sweep.model.contact import is_far
 from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.invariant_planes import moved
 from vibro_sweep.model.linear import stacked
 from vibro_sweep.model.metric import ROUNDING
+from vibro_sweep.model.models.two_mass import NAMES
 from vibro_sweep.model.modes import modes
 from vibro_sweep.model.oscillator import System
 from vibro_sweep.model.own_time import in_own_time, with_velocities
-from vibro_sweep.model.parameters import NAMES, ParameterError
+from vibro_sweep.model.refusals import ParameterError
 from vibro_sweep.model.stops import has_compliant
+from vibro_sweep.tables import outcomes as status
 
 IMPACT = np.dtype([("t", float), ("side", np.int8), ("v1", float), ("x2", float), ("v2", float)])
 

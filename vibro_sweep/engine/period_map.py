@@ -22,15 +22,15 @@ from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.variational.grazing_map import Expansion, iterate
 from vibro_sweep.engine.variational.parameter_sensitivity import Equations, differentiate
 from vibro_sweep.engine.variational.propagator import new_workspace
-from vibro_sweep.model import status
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.arguments import is_number
 from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.linear import Linear, gap_response, rigid_family_of
+from vibro_sweep.model.models.two_mass import NAMES
 from vibro_sweep.model.oscillator import System, checked_system
-from vibro_sweep.model.parameters import NAMES
 from vibro_sweep.model.refusals import not_allowed
 from vibro_sweep.model.sensitivity import grazing_state, grazing_state_slopes, motion, motion_slopes
+from vibro_sweep.tables import outcomes as status
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Mapped:
     """The result of a `PeriodMap` for n states.
 
     states : (n, 2 N) where they are mapped to; NaN where the status is not 0
-    status : (n,) int8, codes of model/status.py; a state behind a stop has BEYOND_STOP
+    status : (n,) int8, codes of tables/outcomes.py; a state behind a stop has BEYOND_STOP
     impacts : n structured arrays as those of `Orbit.impacts`, t from the section at which the state starts; of chatter
         those computed one by one
     sticking : n structured arrays, fields t_on, t_off, side; t_off is the end of the map for a rest that outlasts it
@@ -62,7 +62,7 @@ class PeriodMap:
         whatever the system's tau, and which knows no behind of a stop
     expand_at : clearance at which that is expanded, by default the exact b*
 
-    `names` : the parameters by which it has derivatives, in order: those of a System are `model.parameters.NAMES`, of
+    `names` : the parameters by which it has derivatives, in order: those of a System are `NAMES` (two_mass.py), of
         others all numbers that are given. Raises ValueError for another order, and for the discontinuity mapping of an
         oscillator that is not symmetric, or has no steady motion.
     """

@@ -19,7 +19,7 @@ from vibro_sweep.engine.tables import general_tables, series
 from vibro_sweep.engine.two_modes import new_fit
 from vibro_sweep.engine.variational import tangent
 from vibro_sweep.engine.variational.multiplier_groups import multipliers_of
-from vibro_sweep.model import status
+from vibro_sweep.tables import outcomes as status
 
 LARGE = 8.0  # clearances that the motion r may measure before flights from a later node are formed without it
 WARM_UP = 200  # periods for the tangent vectors to find their directions

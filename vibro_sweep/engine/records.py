@@ -6,9 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.model.dimensions import dimensions
-from vibro_sweep.model.observables import OF_AN_ORBIT
-from vibro_sweep.model.parameters import NAMES
+from vibro_sweep.model.models.two_mass import NAMES
+from vibro_sweep.tables.observables import OF_AN_ORBIT, dimensions
 
 
 class Kind(NamedTuple):

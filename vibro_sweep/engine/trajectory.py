@@ -15,7 +15,7 @@ from vibro_sweep.engine.motion.together import Ensemble, Readings
 from vibro_sweep.engine.points import prepare
 from vibro_sweep.engine.simd.jit import exported, inline, jit
 from vibro_sweep.engine.simd.lanes import LANES
-from vibro_sweep.model import status
+from vibro_sweep.tables import outcomes as status
 
 
 class Trajectories(NamedTuple):

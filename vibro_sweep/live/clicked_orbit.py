@@ -12,9 +12,9 @@ from vibro_sweep.driver.compute import compute
 from vibro_sweep.live.requests import View
 from vibro_sweep.live.views import scene_of_view
 from vibro_sweep.model.any_oscillator import AnyOscillator
-from vibro_sweep.model.state import state
-from vibro_sweep.model.status import STATUSES, is_valid
 from vibro_sweep.scene import Scene, Section
+from vibro_sweep.tables.coordinates import state
+from vibro_sweep.tables.outcomes import is_valid, status_of
 
 SAMPLES = 200  # in a forcing period
 MOST_SHOWN, UNSETTLED = 60, 8  # forcing periods: of a periodic orbit, of another one
@@ -68,7 +68,7 @@ def _computed(scene: Scene, system: AnyOscillator, start: int, alone: bool) -> S
 def orbit_message(found: Settled) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
     """Arrays and words on an orbit: samples of its motion, impacts, section points, exponents."""
     system, q = found.system, found.system.linear
-    words: dict[str, Any] = {"status": STATUSES[found.status].text, "period": found.period, "alone": found.alone}
+    words: dict[str, Any] = {"status": status_of(found.status).text, "period": found.period, "alone": found.alone}
     words |= {"T": _finite(system.period), "low": _finite(q.low), "high": _finite(q.high), "masses": system.masses}
     words |= {"normal": q.normal.tolist(), "mapping": found.mapping}
     words["pressed"] = [bool(one) for one in q.is_compliant((-1, 1))]

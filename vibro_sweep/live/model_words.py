@@ -9,14 +9,15 @@ from vibro_sweep.live.requests import View
 from vibro_sweep.live.views import SPEEDS, heights
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.catalogue import BY_NAME
+from vibro_sweep.model.checked_numbers import range_of
 from vibro_sweep.model.contact_laws.compliant import LAW as COMPLIANT
-from vibro_sweep.model.exponents import CERTAIN
 from vibro_sweep.model.models import MODELS
-from vibro_sweep.model.parameters import NUMBER, POSITIVE, Parameter, range_of
-from vibro_sweep.model.status import NOT_SETTLED, STATUSES
 from vibro_sweep.model.stops import stop_of
 from vibro_sweep.plotting.style import CHAOS, EXPONENTS, LONGER, LONGEST, NO_PERIOD, PERIODS, density_colours
 from vibro_sweep.scene import Scene
+from vibro_sweep.tables.exponents import CERTAIN
+from vibro_sweep.tables.outcomes import NOT_COMPUTED, NOT_SETTLED, STATUSES
+from vibro_sweep.tables.quantity import NUMBER, POSITIVE, Parameter
 
 DECADE = 10.0
 LARGEST = sys.float_info.max
@@ -46,7 +47,7 @@ def model_words(scene: Scene, view: View) -> dict[str, Any]:
         "title": MODELS[system.model.name].title if system.model.name in MODELS else system.model.name,
         "stops": [one if np.isfinite(one) else None for one in (system.linear.low, system.linear.high)],
         "colours": _colours(),
-        "statuses": {str(code): one.text for code, one in STATUSES.items()},
+        "statuses": {str(code): one.text for code, one in enumerate(STATUSES, NOT_COMPUTED)},
         "not_settled": NOT_SETTLED,
         "certain": CERTAIN,
     }

@@ -10,9 +10,9 @@ import numpy as np
 from vibro_sweep.live.requests import View
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.errors import ArgumentError
-from vibro_sweep.model.state import state
 from vibro_sweep.scene import Scene, scene_of
 from vibro_sweep.scene.written import data_of
+from vibro_sweep.tables.coordinates import state
 
 SPEEDS = {"speed_right": "right", "speed_left": "left"}
 OBSERVE = ("section", "lyapunov")

@@ -14,16 +14,14 @@ from vibro_sweep.analysis.windows.job import Job, window_of
 from vibro_sweep.live.clicked_orbit import Settled
 from vibro_sweep.live.requests import View
 from vibro_sweep.live.views import SPEEDS, height_of
-from vibro_sweep.model.bifurcations import BY_NAME, GRAZES
-from vibro_sweep.model.exponents import CERTAIN
-from vibro_sweep.model.outcomes import REASONS
-from vibro_sweep.model.parameters import range_of
-from vibro_sweep.model.state import state
-from vibro_sweep.model.status import STATUSES, is_valid
+from vibro_sweep.model.checked_numbers import range_of
+from vibro_sweep.tables.bifurcations import BY_NAME, GRAZES
+from vibro_sweep.tables.coordinates import state
+from vibro_sweep.tables.exponents import CERTAIN
+from vibro_sweep.tables.outcomes import REASONS, is_valid, named, status_of
 
 MOST_POINTS = 300  # of a branch that is drawn
 NEAR = 1e-9  # relative: grazes nearer than this are the same
-_REASONS = list(REASONS)
 
 
 def window_message(
@@ -41,7 +39,7 @@ def window_message(
     job = Job(found.system, found.end, found.period, view.axis, bounds)
     arrays = window_of(job)
     if "reason" in arrays:
-        found_out = REASONS[_REASONS[int(arrays["reason"])]]
+        found_out = REASONS[int(arrays["reason"])]
         return {}, {"reason": f"no window here: {found_out.text}. {found_out.advice}".strip()}
     window = branch_of(arrays, view.axis, found.system)
     orbit = window._start
@@ -78,9 +76,9 @@ def _ends_at(branch: Branch, end: SpecialPoint, axis: str) -> bool:
 
 def _not_periodic(found: Settled) -> str:
     if not is_valid(found.status):
-        return STATUSES[found.status].text
+        return status_of(found.status).text
     if found.exponents[0] > CERTAIN * found.errors[0]:
-        return "no window here: " + REASONS["chaos"].text
+        return "no window here: " + named(REASONS, "chaos").text
     return "no window here: no period was found within the record; a longer transient or record may find one"
 
 

@@ -7,9 +7,9 @@ import numpy as np
 
 from vibro_sweep.model.linear import Family, Linear
 from vibro_sweep.model.models.declaration import Model
-from vibro_sweep.model.parameters import Parameter
 from vibro_sweep.model.stops import followers
-from vibro_sweep.model.units import Units
+from vibro_sweep.tables.quantity import Parameter
+from vibro_sweep.tables.units import Units
 
 
 class AnyOscillator:

@@ -9,7 +9,7 @@ import numpy as np
 from vibro_sweep.model.errors import ArgumentError, ArgumentTypeError
 from vibro_sweep.model.real import array_of, number_of
 from vibro_sweep.model.refusals import not_allowed
-from vibro_sweep.model.state import state as names
+from vibro_sweep.tables.coordinates import state as names
 
 _COUNTS = {2: "two", 4: "four", 6: "six"}
 MAX_COUNT = 10**12  # periods

@@ -11,8 +11,8 @@ from vibro_sweep.model.arguments import check_type
 from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.linear import Family, Linear
 from vibro_sweep.model.models.declaration import Model
-from vibro_sweep.model.parameters import NUMBER, Parameter
-from vibro_sweep.model.units import Units
+from vibro_sweep.tables.quantity import Parameter
+from vibro_sweep.tables.units import Units
 
 BUILD = "build"  # the `type` of files of such sweeps
 STORED = {  # of a Linear, with the symbol that it has in files
@@ -26,9 +26,7 @@ class Built(AnyOscillator):
     def __init__(self, function: Callable[..., AnyOscillator], numbers: Mapping[str, float]):
         self.function, self.given = function, dict(numbers)
         self.base, self._same_units = self._made(self.given), True
-        named = tuple(
-            Parameter(name, rf"\mathrm{{{name}}}", "1", NUMBER, name, name, free_motion=True) for name in numbers
-        )
+        named = tuple(Parameter(name, name, name, rf"\mathrm{{{name}}}", free_motion=True) for name in numbers)
         self.model = Model(BUILD, self.name, "", "", "", named, (), lambda given: self.base.masses, self._linear)
         self.described = {one.name: one for one in named}
 
@@ -122,17 +120,10 @@ def stored_names(masses: int) -> dict[str, Parameter]:
     texts |= {"omega": "forcing frequency", "tau": "forcing phase"}
     named = {
         f"{field}{place}": Parameter(
-            f"{field}{place}",
-            f"{STORED[field]}_{{{place}}}",
-            units.get(field, "N"),
-            NUMBER,
-            "entry",
-            f"{field}, {place}",
+            f"{field}{place}", "entry", f"{field}, {place}", f"{STORED[field]}_{{{place}}}", units.get(field, "N")
         )
         for field, all_of_it in places.items()
         for place in all_of_it
     }
     more = {"low": "m", "high": "m", "omega": "rad s-1"}
-    return named | {
-        name: Parameter(name, name, more.get(name, "1"), NUMBER, text, text) for name, text in texts.items()
-    }
+    return named | {name: Parameter(name, text, text, name, more.get(name, "1")) for name, text in texts.items()}

@@ -3,19 +3,17 @@
 A name means the same in all models, and has one symbol and one label.
 """
 
-from vibro_sweep.model.dimensions import DIMENSIONS, Dimension
 from vibro_sweep.model.models import MODELS
-from vibro_sweep.model.observables import variables
-from vibro_sweep.model.parameters import B_LEFT, B_RIGHT, B_STAR, PAPER, Parameter
-from vibro_sweep.model.state import INITIAL, MOST_MASSES
-from vibro_sweep.model.variable import Variable
+from vibro_sweep.model.models.two_mass import PAPER
+from vibro_sweep.tables.coordinates import INITIAL, MOST_MASSES
+from vibro_sweep.tables.observables import DIMENSIONS, variables
+from vibro_sweep.tables.parameters import B_LEFT, B_RIGHT, B_STAR
+from vibro_sweep.tables.quantity import Parameter, Quantity
 
 # Of all oscillators; the paper's say what a name means.
 OF_A_SYSTEM: dict[str, Parameter] = {one.name: one for one in PAPER}
 OF_A_SYSTEM |= {name: one for model in MODELS.values() for name, one in model.flat(MOST_MASSES).items()} | OF_A_SYSTEM
 
 NUMBERS: dict[str, Parameter] = OF_A_SYSTEM | {one.name: one for one in (B_STAR, B_RIGHT, B_LEFT, *INITIAL)}
-AXES: dict[str, Parameter | Dimension] = NUMBERS | DIMENSIONS
-BY_NAME: dict[str, Parameter | Dimension | Variable] = AXES | {
-    one.name: one for gap in (True, False) for one in variables(MOST_MASSES, gap)
-}
+AXES: dict[str, Quantity] = NUMBERS | DIMENSIONS
+BY_NAME: dict[str, Quantity] = AXES | {one.name: one for gap in (True, False) for one in variables(MOST_MASSES, gap)}

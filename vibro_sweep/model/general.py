@@ -3,6 +3,7 @@
 from __future__ import annotations  # help() says ArrayLike, and not all that this may be
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from functools import cached_property, partial
 from typing import Any, Literal
 
@@ -11,15 +12,16 @@ from numpy.typing import ArrayLike
 
 from vibro_sweep.model import wording
 from vibro_sweep.model.any_oscillator import AnyOscillator
+from vibro_sweep.model.checked_numbers import UNITS_ALLOWED, checked_number, units_from
 from vibro_sweep.model.linear import Family, Linear
 from vibro_sweep.model.models import MODELS, model_named
 from vibro_sweep.model.models.declaration import Model, Option, linear_of
-from vibro_sweep.model.parameter import LENGTHS
-from vibro_sweep.model.parameters import Parameter, ParameterError, checked_number
 from vibro_sweep.model.real import array_of, number_of
-from vibro_sweep.model.state import MOST_MASSES
+from vibro_sweep.model.refusals import ParameterError
 from vibro_sweep.model.stops import check_stops, completed
-from vibro_sweep.model.units import ALLOWED, Units, units_from
+from vibro_sweep.tables.coordinates import MOST_MASSES
+from vibro_sweep.tables.quantity import LENGTHS, Parameter
+from vibro_sweep.tables.units import Units
 
 
 class Oscillator(AnyOscillator):
@@ -124,7 +126,7 @@ class Oscillator(AnyOscillator):
         """The numbers, those of lists one by one: m1, m2, ..."""
         numbers, units = self.numbers, self.model.depending(self.given)
         flat = self.model.flat(self.masses)
-        return {name: one._replace(units=units.get(name, one.units)) for name, one in flat.items() if name in numbers}
+        return {name: replace(one, units=units.get(name, one.units)) for name, one in flat.items() if name in numbers}
 
     @property
     def numbers(self) -> dict[str, Any]:
@@ -222,7 +224,7 @@ def checked(model: Model, given: Mapping[str, Any]) -> dict[str, Any]:
         if not one.each:
             value = given.get(one.name, one.default)
             words = isinstance(value, str) and value in one.words
-            left_out = value is None and (one.follows or one.optional)
+            left_out = value is None and one.optional
             result[one.name] = value if words or left_out else checked_number(one, value, stops)
     check_stops(result)
     return {name: result[name] for name in known}
@@ -260,7 +262,7 @@ def _option(one: Option, value: Any) -> Any:
         return bool(value)
     elif one.kind == "units":
         if (units := units_from(value)) is None:
-            raise ParameterError(one.name, value, ALLOWED)
+            raise ParameterError(one.name, value, UNITS_ALLOWED)
         return units
     elif one.kind == "whole":
         if not isinstance(value, (int, np.integer)) or number_of(value) is None:

@@ -10,8 +10,8 @@ import numpy as np
 
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.linear import Linear, amplitudes, gap_response, grazing_phase, static_state
+from vibro_sweep.model.models.two_mass import FREE_MOTION
 from vibro_sweep.model.modes import modes
-from vibro_sweep.model.parameters import FREE_MOTION
 from vibro_sweep.model.stops import followers
 
 ROUNDED = 4 * np.finfo(float).eps  # of a force on a mode, relative to its parts

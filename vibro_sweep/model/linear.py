@@ -16,11 +16,10 @@ import numpy as np
 
 from vibro_sweep.model.contact_laws.compliant import LAW as COMPLIANT
 from vibro_sweep.model.errors import ArgumentError, ArgumentTypeError
-from vibro_sweep.model.parameters import STOP_NUMBERS
 from vibro_sweep.model.refusals import not_allowed
 from vibro_sweep.model.stacks import least_squares
 from vibro_sweep.model.steady import gap_responses, grazing_phases, responses, static_states, steady_amplitudes
-from vibro_sweep.model.stops import stop_of, why_rigid
+from vibro_sweep.model.stops import NUMBERS, stop_of, why_rigid
 
 MATRICES = ("M", "K", "C", "normal", "omega")  # fields that move free modes,
 FORCED = (*MATRICES, "constant", "sine", "cosine")  # the steady motion too,
@@ -292,7 +291,7 @@ def contact(*, b, offset=0.0, stops="both", release="displacement", **numbers) -
 
     numbers : those of the stops, by name
     """
-    if unknown := numbers.keys() - {one.name for one in STOP_NUMBERS}:
+    if unknown := numbers.keys() - {*NUMBERS}:
         raise TypeError(f"stops have no {', '.join(sorted(unknown))}")
     low, high = stop_of(numbers, "left"), stop_of(numbers, "right")
     fields = {"R": ("R", np.nan), "c": ("c_stop", 0.0), "p": ("preload", 0.0)}

@@ -11,26 +11,42 @@ import numpy as np
 
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.arguments import check_type
+from vibro_sweep.model.checked_numbers import UNITS_ALLOWED, checked_number, range_of, units_from
+from vibro_sweep.model.contact_laws import OTHER_STOPS
+from vibro_sweep.model.contact_laws.rigid import RESTITUTION, RESTITUTION_LEFT
 from vibro_sweep.model.grazing import resolved, with_phase
 from vibro_sweep.model.linear import Family
-from vibro_sweep.model.models.declaration import OF_STOPS, Model
-from vibro_sweep.model.models.two_mass import MODEL
+from vibro_sweep.model.models.declaration import OF_STOPS, STOPS, Model
+from vibro_sweep.model.models.two_mass import MODEL, PARAMETERS
 from vibro_sweep.model.modes import Modes, modes
-from vibro_sweep.model.parameters import (
-    OTHER_STOPS,
-    PARAMETERS,
-    STOPS,
-    Parameter,
-    ParameterError,
-    checked_number,
-    physical_range,
-)
 from vibro_sweep.model.real import number_of
+from vibro_sweep.model.refusals import ParameterError
 from vibro_sweep.model.stops import check_stops, completed
-from vibro_sweep.model.units import ALLOWED, Units, units_from
+from vibro_sweep.tables.parameters import CLEARANCE, OFFSET
+from vibro_sweep.tables.quantity import NOT_NEGATIVE, POSITIVE, Parameter
+from vibro_sweep.tables.units import Units
 
 Stops = Literal["both", "right", "left"]
 Release = Literal["displacement", "force"]
+
+PHYSICAL = (  # quantities in SI units, from which the numbers of a System follow (section 2 of the paper)
+    Parameter("M1", "mass 1", "mass between the stops", "M_1", "kg", POSITIVE),
+    Parameter("M2", "mass 2", "second mass", "M_2", "kg", POSITIVE),
+    Parameter("K1", "stiffness 1", "stiffness between the masses", "K_1", "N m-1", POSITIVE),
+    Parameter("K2", "stiffness 2", "stiffness between the second mass and the ground", "K_2", "N m-1", NOT_NEGATIVE),
+    Parameter("C1", "damping 1", "damping between the masses", "C_1", "N s m-1", NOT_NEGATIVE),
+    Parameter("C2", "damping 2", "damping between the second mass and the ground", "C_2", "N s m-1", NOT_NEGATIVE),
+    Parameter("P1", "force 1", "amplitude of the force on the first mass", "P_1", "N", NOT_NEGATIVE),
+    Parameter("P2", "force 2", "amplitude of the force on the second mass", "P_2", "N", NOT_NEGATIVE),
+    Parameter("Omega", "forcing frequency", "angular frequency of the force, 2 pi times that in Hz", r"\Omega",
+              "rad s-1", POSITIVE),
+    RESTITUTION,
+    dataclass_replace(CLEARANCE, name="B", symbol="B", text="clearance on each side, from the middle to a stop"),
+    dataclass_replace(OFFSET, name="B0", symbol="B_0",
+                      text="middle of the stops, from where the first mass rests without a force"),
+    RESTITUTION_LEFT,
+    *OTHER_STOPS,
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -71,11 +87,11 @@ class System(AnyOscillator):
         _check_word("stops", self.stops, STOPS)
         if self.units is not None:
             if (units := units_from(self.units)) is None:
-                raise ParameterError("units", self.units, ALLOWED)
+                raise ParameterError("units", self.units, UNITS_ALLOWED)
             object.__setattr__(self, "units", units)
         for one in PARAMETERS:
             value = getattr(self, one.name)
-            left_out = value is None and (one.follows or one.optional)
+            left_out = value is None and one.optional
             if not (isinstance(value, str) and value in one.words) and not left_out:
                 object.__setattr__(self, one.name, checked_number(one, value, self.stops))
         for one in OF_STOPS:
@@ -156,11 +172,12 @@ class System(AnyOscillator):
         (0.63, 4.0, 0.05)
         """
         _check_word("stops", stops, STOPS)
+        physical = {one.name: one for one in PHYSICAL}
         given = dict(M1=M1, M2=M2, K1=K1, K2=K2, C1=C1, C2=C2, P1=P1, P2=P2, Omega=Omega, B=B, B0=B0)
         for name, value in given.items():
-            allowed, number = physical_range(name, stops), number_of(value)
+            allowed, number = range_of(physical[name], stops), number_of(value)
             if number is None or not (math.isfinite(number) and allowed.holds(number)):
-                raise ParameterError(name, value, allowed.text)
+                raise ParameterError(name, value, allowed.text.replace("a number", "a finite number"))
             given[name] = number
         M1, M2, K1, K2, C1, C2, P1, P2, Omega, B, B0 = given.values()
         if P1 + P2 == 0:
@@ -250,5 +267,5 @@ def checked_system(system: object) -> None:
 _said, _, _examples = inspect.cleandoc(System.__doc__ or "").partition("\n\nExamples\n")
 if _examples:
     _parameters = [f"{one.name} : {one.described}; {one.range.text}" for one in PARAMETERS]
-    _parameters += [f"stops : {', '.join(STOPS)}", f"units : for labels; {ALLOWED}; left out: none"]
+    _parameters += [f"stops : {', '.join(STOPS)}", f"units : for labels; {UNITS_ALLOWED}; left out: none"]
     System.__doc__ = "\n".join([_said, "\nParameters\n----------", *_parameters, "\nExamples", _examples])

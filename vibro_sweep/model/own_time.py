@@ -10,8 +10,8 @@ import math
 import numpy as np
 
 from vibro_sweep.model.linear import Linear
-from vibro_sweep.model.observables import variables
-from vibro_sweep.model.units import power_of_seconds
+from vibro_sweep.tables.observables import variables
+from vibro_sweep.tables.units import power_of_seconds
 
 BY_RATE = {"C": 1, "omega": 1, "c_low": 1, "c_high": 1} | dict.fromkeys(
     ("K", "constant", "sine", "cosine", "k_low", "k_high", "p_low", "p_high"), 2

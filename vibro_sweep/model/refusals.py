@@ -5,6 +5,8 @@ import reprlib
 
 import numpy as np
 
+from vibro_sweep.model.errors import VibroSweepError
+
 LONGEST = 60  # letters of a value in a message
 MOST_DIGITS = 4000  # of an integer, which Python does not print where it has more
 UNMASK = "; of masked data the entries must be filled (`filled`) or left out (`compressed`)"
@@ -49,3 +51,27 @@ def not_allowed(name: str, value: object, allowed: str) -> str:
 def hint_for(value: object) -> str:
     """The hint for masked data."""
     return UNMASK if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value) else ""
+
+
+class ParameterError(VibroSweepError, ValueError):
+    """A parameter outside its range; carries `key`, `value` and `allowed`.
+
+    Examples
+    --------
+    >>> import vibro_sweep as vs
+    >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
+    >>> try:
+    ...     system.replace(R=1.2)
+    ... except vs.ParameterError as error:
+    ...     print(error)
+    ...     print(error.key, error.value)
+    R: 1.2 is not allowed; it must be a finite number from 0 to 1
+    R 1.2
+    """
+
+    def __init__(self, key: str, value: object, allowed: str):
+        super().__init__(key, value, allowed)
+        self.key, self.value, self.allowed = key, value, allowed
+
+    def __str__(self):
+        return not_allowed(self.key, self.value, self.allowed)

@@ -3,12 +3,12 @@
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-from vibro_sweep.model.contact_laws import LAWS, RIGID
+from vibro_sweep.model.contact_laws import LAWS, RIGID, STOP_NUMBERS
 from vibro_sweep.model.contact_laws.compliant import LAW as COMPLIANT
 from vibro_sweep.model.contact_laws.contact_law import ContactLaw
-from vibro_sweep.model.parameters import ParameterError
+from vibro_sweep.model.refusals import ParameterError
 
-NUMBERS = tuple(one.name for law in LAWS.values() for one in law.numbers_of_both)
+NUMBERS = tuple(one.name for one in STOP_NUMBERS)
 RIGID_ALONE = (
     "with k_stop there are sweeps of the flow, `simulate`, `lyapunov`, periodic orbits, branches, curves and windows"
 )

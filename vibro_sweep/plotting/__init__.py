@@ -12,9 +12,7 @@ import matplotlib
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from vibro_sweep.model.branch_file import CHART
 from vibro_sweep.model.errors import ArgumentTypeError
-from vibro_sweep.model.picture_kinds import PICTURES
 from vibro_sweep.model.refusals import not_allowed, shown
 from vibro_sweep.plotting import (
     basins,
@@ -35,6 +33,8 @@ from vibro_sweep.plotting.pictures import check_output, save
 from vibro_sweep.plotting.plot_options import PlotOptions
 from vibro_sweep.plotting.source import name_of, readable
 from vibro_sweep.plotting.sweep_result import PlotError, Result
+from vibro_sweep.tables.file_columns import CHART
+from vibro_sweep.tables.picture_kinds import PICTURES
 
 if TYPE_CHECKING:
     import xarray

@@ -4,11 +4,11 @@ import numpy as np
 from matplotlib.colors import to_rgb
 from matplotlib.patches import Patch
 
-from vibro_sweep.model.state import MOST_MASSES, START, state
 from vibro_sweep.plotting.families import KINDS, describe, kind, named
 from vibro_sweep.plotting.labels import legend_below
 from vibro_sweep.plotting.style import INK, NOT_COMPUTED, edges, equation, marked
 from vibro_sweep.plotting.sweep_result import Point, Result
+from vibro_sweep.tables.coordinates import MOST_MASSES, START, state
 
 NAMED = 11  # attractors that the legend has room for
 NEAR = 0.52  # of the plane's width or height, from its middle

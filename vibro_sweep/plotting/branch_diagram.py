@@ -5,10 +5,7 @@ from itertools import pairwise
 import numpy as np
 from matplotlib.lines import Line2D
 
-from vibro_sweep.model.bifurcations import ON_CIRCLE
-from vibro_sweep.model.branch_file import BRANCHES
 from vibro_sweep.model.refusals import shown
-from vibro_sweep.model.state import MOST_MASSES, state
 from vibro_sweep.plotting import joined, sweeps
 from vibro_sweep.plotting.decades import scale_of
 from vibro_sweep.plotting.labels import arrange, legend_below, name_beside
@@ -16,6 +13,9 @@ from vibro_sweep.plotting.plot_options import PlotOptions
 from vibro_sweep.plotting.ragged import RaggedFile, sweep_below
 from vibro_sweep.plotting.style import DASHES, FAINT, INK, LEFT, SPECIAL, axis_name, limits, special_mark, symbol
 from vibro_sweep.plotting.sweep_result import PlotError, Result
+from vibro_sweep.tables.bifurcations import ON_CIRCLE
+from vibro_sweep.tables.coordinates import MOST_MASSES, state
+from vibro_sweep.tables.file_columns import BRANCHES
 
 LINES = (LEFT, "#c26a00", "#446644", "#7b3294", "#77541f", "#1a1a2e")  # of branches, in turn
 MOST = 3.0  # modulus of a multiplier that is shown: at a graze it is infinite

@@ -5,8 +5,6 @@ from pathlib import Path
 
 import numpy as np
 
-from vibro_sweep.model.bifurcations import CODIMENSION_TWO, CURVES
-from vibro_sweep.model.branch_file import CHART
 from vibro_sweep.model.refusals import shown
 from vibro_sweep.plotting import planes
 from vibro_sweep.plotting.drawn_curves import Drawn, draw, handles, name_points, scale
@@ -15,6 +13,8 @@ from vibro_sweep.plotting.plot_options import PlotOptions
 from vibro_sweep.plotting.ragged import RaggedFile, sweep_below
 from vibro_sweep.plotting.relative import axis_label, check_relative
 from vibro_sweep.plotting.sweep_result import PlotError, Result
+from vibro_sweep.tables.bifurcations import CODIMENSION_TWO, CURVES
+from vibro_sweep.tables.file_columns import CHART
 
 NAMED = 14  # points of codimension two that are named over a plane
 

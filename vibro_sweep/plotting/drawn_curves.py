@@ -8,11 +8,11 @@ import numpy as np
 from matplotlib import patheffects
 from matplotlib.lines import Line2D
 
-from vibro_sweep.model.bifurcations import BY_NAME, CODIMENSION_TWO, TYPES
 from vibro_sweep.plotting.decades import scale_of
 from vibro_sweep.plotting.labels import arrange, legend_below, name_beside
 from vibro_sweep.plotting.plot_options import PlotOptions
 from vibro_sweep.plotting.style import INK, axis_name, with_unit
+from vibro_sweep.tables.bifurcations import BY_NAME, CODIMENSION_TWO, TYPES
 
 COLOURS = {one.name: one.curve_colour for one in TYPES if one.condition}
 # of orbits of different periods, beside the colours of the types but for the graze's

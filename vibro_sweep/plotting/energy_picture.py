@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from vibro_sweep.model.state import MOST_MASSES
 from vibro_sweep.plotting.labels import ABOVE
 from vibro_sweep.plotting.spectrum_panel import curve
 from vibro_sweep.plotting.style import ARROWS, BRANCHES, FAINT, INK, LEFT, RIGHT, symbol
 from vibro_sweep.plotting.sweep_result import Result
 from vibro_sweep.plotting.sweeps import set_reach
+from vibro_sweep.tables.coordinates import MOST_MASSES
 
 COLOURS = (INK, RIGHT, LEFT, FAINT)
 

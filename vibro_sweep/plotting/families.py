@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from vibro_sweep.model.dimensions import averaged
 from vibro_sweep.plotting.style import INK, LEFT, NOT_COMPUTED, RIGHT
+from vibro_sweep.tables.observables import averaged
 
 _LAST = averaged(0)  # they stand after the coordinates
 RATES = [_LAST.index(name) - len(_LAST) for name in ("impacts_right", "impacts_left")]  # places among the averages

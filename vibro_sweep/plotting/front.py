@@ -12,11 +12,11 @@ from matplotlib.figure import Figure
 from vibro_sweep.model.arguments import check_type, checked_flag
 from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.files import checked_path, file_to_write
-from vibro_sweep.model.picture_kinds import Plottable
 from vibro_sweep.model.real import array_of, number_of
 from vibro_sweep.model.refusals import not_allowed
 from vibro_sweep.plotting import PlotError, PlotOptions, check_suffix, figure
 from vibro_sweep.plotting.pictures import check_output, save
+from vibro_sweep.tables.picture_kinds import Plottable
 
 if TYPE_CHECKING:
     import xarray

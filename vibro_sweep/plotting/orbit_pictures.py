@@ -4,7 +4,6 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from vibro_sweep.model.state import MOST_MASSES, state
 from vibro_sweep.plotting import pressed, rests
 from vibro_sweep.plotting.labels import legend_below
 from vibro_sweep.plotting.paths import GAP, gap_of, path
@@ -24,6 +23,7 @@ from vibro_sweep.plotting.style import (
 )
 from vibro_sweep.plotting.sweep_result import Result
 from vibro_sweep.plotting.sweeps import section_variables
+from vibro_sweep.tables.coordinates import MOST_MASSES, state
 
 ARROWS_AT = (0.06, 0.36, 0.66, 0.91)  # of the first forcing period, or of the whole way
 

@@ -5,9 +5,9 @@ from typing import NamedTuple
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
-from vibro_sweep.model.state import state
-from vibro_sweep.model.trajectory_variables import before
 from vibro_sweep.plotting.sweep_result import Point, Result
+from vibro_sweep.tables.coordinates import state
+from vibro_sweep.tables.observables import jumping
 
 GAP = {"gap": "x", "gap_velocity": "v"}  # what is formed of the positions, and of the velocities
 
@@ -56,9 +56,9 @@ def path(result: Result, point: Point) -> Path:
     t, along = result.coordinate("t_over_T"), result.contact_normal
     names = state(result.masses)
     motion = {name: _stored(result, f"trajectory_{name}", point, len(t)) for name in names}
-    jumping = before(along is not None)
+    velocity = jumping(along is not None)
     when, side, speed, after = (
-        result.one(f"trajectory_impact_{name}", point) for name in ("t_over_T", "side", jumping, f"{jumping}_after")
+        result.one(f"trajectory_impact_{name}", point) for name in ("t_over_T", "side", velocity, f"{velocity}_after")
     )
     hits = np.isfinite(when)
     at_impact = {name: _stored(result, f"trajectory_impact_{name}", point, len(when))[hits] for name in names}

@@ -10,7 +10,6 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
-from vibro_sweep.model.observables import VARIABLES
 from vibro_sweep.plotting import decades, rests, strip
 from vibro_sweep.plotting.decades import along_axis, in_proportion
 from vibro_sweep.plotting.labels import arrange, legend_below, thin_ticks
@@ -33,6 +32,7 @@ from vibro_sweep.plotting.style import (
     grazing_of,
 )
 from vibro_sweep.plotting.sweep_result import PlotError, Result
+from vibro_sweep.tables.observables import VARIABLES
 
 _OF_A_POINT = {one.name: one.label for one in VARIABLES if not one.dimensions}
 

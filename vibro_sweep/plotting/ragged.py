@@ -5,14 +5,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vibro_sweep.model.bifurcations import KINDS, TYPES
-from vibro_sweep.model.branch_file import BRANCHES, WINDOWS
 from vibro_sweep.model.refusals import cut
-from vibro_sweep.model.units import shown_unit
 from vibro_sweep.plotting.source import PlotError, name_of, readable
 from vibro_sweep.store.attributes import attributes, quantities_of, text, texts
 from vibro_sweep.store.opening import StoreError, opened
 from vibro_sweep.store.ragged_checks import Stored, check
+from vibro_sweep.tables.bifurcations import KINDS, TYPES
+from vibro_sweep.tables.file_columns import BRANCHES, WINDOWS
+from vibro_sweep.tables.units import shown_unit
 
 if TYPE_CHECKING:
     import xarray

@@ -4,8 +4,8 @@ from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
-from vibro_sweep.model.parameters import FOLLOWING
-from vibro_sweep.model.status import STATUSES, VALID
+from vibro_sweep.tables.outcomes import VALID, status_of
+from vibro_sweep.tables.parameters import FOLLOWING
 
 Along = dict[str, tuple[tuple[str, ...], np.ndarray]]  # name -> the keys that a number depends on, its values
 
@@ -52,5 +52,5 @@ def _valid(source: Source) -> list[int]:
     if meanings is None:
         return [0]
     named = zip(np.atleast_1d(source.attribute("status", "flag_values")).tolist(), meanings.split(), strict=False)
-    valid = {STATUSES[code].name for code in VALID}
+    valid = {status_of(code).name for code in VALID}
     return [code for code, meaning in named if meaning in valid]

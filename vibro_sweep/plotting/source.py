@@ -5,11 +5,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from vibro_sweep.model.branch_file import SWEEP
 from vibro_sweep.model.errors import ArgumentTypeError, VibroSweepError
 from vibro_sweep.model.refusals import not_allowed
 from vibro_sweep.store.attributes import is_flat, quantities_of, text, texts
 from vibro_sweep.store.opening import ForeignError, StoreError, is_dataset, open_file, opened
+from vibro_sweep.tables.file_columns import SWEEP
 
 if TYPE_CHECKING:
     import xarray

@@ -5,12 +5,12 @@ from matplotlib.collections import PolyCollection
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from vibro_sweep.model.branch_file import WINDOWS
-from vibro_sweep.model.outcomes import REASONS
 from vibro_sweep.plotting.decades import along_axis
 from vibro_sweep.plotting.ragged import RaggedFile
 from vibro_sweep.plotting.style import FAINT, SPECIAL, edges, special_mark, type_size
 from vibro_sweep.plotting.sweep_result import PlotError, Result
+from vibro_sweep.tables.file_columns import WINDOWS
+from vibro_sweep.tables.outcomes import REASONS, names
 
 HEIGHT = 1.5  # inches
 LANES = 6  # bars of windows that overlap lie above each other
@@ -129,7 +129,7 @@ def _reasons(ax, result, file, values, order) -> list[str]:
     reasons = file["orbit_reason"].reshape(len(swept), -1)[order]
     to, back = along_axis(values)
     borders, named = back(edges(to(values))), []
-    for code, name in enumerate(REASONS):
+    for code, name in enumerate(names(REASONS)):
         there = np.flatnonzero((reasons == code).any(axis=1))
         if code and len(there):
             named.append(name)

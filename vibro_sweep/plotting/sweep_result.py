@@ -7,18 +7,18 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from vibro_sweep.model.catalogue import OF_A_SYSTEM
-from vibro_sweep.model.exponents import CERTAIN, sign_of
 from vibro_sweep.model.real import number_of
 from vibro_sweep.model.refusals import not_allowed, shown
-from vibro_sweep.model.state import MOST_MASSES
-from vibro_sweep.model.status import NOT_COMPUTED
 from vibro_sweep.model.stops import NUMBERS, compliance_of
-from vibro_sweep.model.units import shown_unit
 from vibro_sweep.plotting.panel import Panel
 from vibro_sweep.plotting.plot_options import PlotOptions
 from vibro_sweep.plotting.settings import settings_of
 from vibro_sweep.plotting.source import PlotError, source_of
 from vibro_sweep.plotting.style import axis_name, equation, in_formula
+from vibro_sweep.tables.coordinates import MOST_MASSES
+from vibro_sweep.tables.exponents import CERTAIN, sign_of
+from vibro_sweep.tables.outcomes import NOT_COMPUTED
+from vibro_sweep.tables.units import shown_unit
 
 LONGEST_LINE = 150  # letters of TeX
 

@@ -4,7 +4,6 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from vibro_sweep.model.state import MOST_MASSES, state
 from vibro_sweep.plotting import density, rests, strip
 from vibro_sweep.plotting.decades import in_proportion
 from vibro_sweep.plotting.impact_panel import NONE, impact_counts, there_are
@@ -27,6 +26,7 @@ from vibro_sweep.plotting.style import (
     symbol,
 )
 from vibro_sweep.plotting.sweep_result import PlotError, Result
+from vibro_sweep.tables.coordinates import MOST_MASSES, state
 
 MANY = 100_000  # from here on single points make a blot, and are counted instead,
 COLUMN = 400  # points (1/72 inch): the width of a diagram, which its values share

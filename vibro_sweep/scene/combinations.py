@@ -6,9 +6,9 @@ import numpy as np
 
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.contact_laws.compliant import LAW as COMPLIANT
-from vibro_sweep.model.exponents import LEAST_RECORD
-from vibro_sweep.model.observables import WORDS
 from vibro_sweep.model.stops import DAMPER_ALONE, why_rigid
+from vibro_sweep.tables.exponents import LEAST_RECORD
+from vibro_sweep.tables.observables import WORDS
 
 from .fields import Form
 from .problems import problem

@@ -9,8 +9,7 @@ from pydantic import ValidationError
 from vibro_sweep.model import wording
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.arguments import checked_count
-from vibro_sweep.model.parameters import ParameterError
-from vibro_sweep.model.refusals import cut, not_allowed
+from vibro_sweep.model.refusals import ParameterError, cut, not_allowed
 
 from .continue_form import ORIGINS
 from .fields import Form

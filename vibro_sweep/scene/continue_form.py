@@ -5,9 +5,9 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, FailFast, Field, Strict, create_model
 
-from vibro_sweep.model.bifurcations import CURVES, WAYS
-from vibro_sweep.model.parameters import Parameter
-from vibro_sweep.model.state import coordinates
+from vibro_sweep.tables.bifurcations import CURVES, WAYS
+from vibro_sweep.tables.coordinates import coordinates
+from vibro_sweep.tables.quantity import Parameter
 
 from .fields import Form, Whole
 

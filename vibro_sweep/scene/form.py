@@ -1,6 +1,6 @@
 """The form of a scene: which keys there are, of which type, and what they mean; its JSON Schema.
 
-Numbers and words come from the tables of `model/`; how the keys must fit each other is said by `combinations.py`.
+Numbers and words come from `tables/` and the models; how the keys must fit each other is said by `combinations.py`.
 """
 
 import functools
@@ -14,10 +14,10 @@ from vibro_sweep.model.arguments import MAX_COUNT
 from vibro_sweep.model.built import Built
 from vibro_sweep.model.models import DEFAULT, MODELS
 from vibro_sweep.model.models.declaration import Model
-from vibro_sweep.model.observables import WORDS
-from vibro_sweep.model.parameters import Parameter
-from vibro_sweep.model.picture_kinds import PICTURES
-from vibro_sweep.model.state import coordinates
+from vibro_sweep.tables.coordinates import coordinates
+from vibro_sweep.tables.observables import WORDS
+from vibro_sweep.tables.picture_kinds import PICTURES
+from vibro_sweep.tables.quantity import Parameter
 
 from .continue_form import continue_form
 from .fields import WHICH, Form, Whole, given, keys, swept
@@ -140,7 +140,7 @@ class TrajectoryForm(Form):
 
 
 # Each word with its text, which editors show.
-_WORDS = {"anyOf": [{"const": word, "description": one.text} for word, one in WORDS.items()]}
+_WORDS = {"anyOf": [{"const": word, "description": text} for word, text in WORDS.items()]}
 Observation = Annotated[Literal[tuple(WORDS)], WithJsonSchema(_WORDS)]
 
 

@@ -8,8 +8,8 @@ from itertools import islice
 from pydantic import ValidationError
 
 from vibro_sweep.model.errors import VibroSweepError
-from vibro_sweep.model.observables import WORDS
 from vibro_sweep.model.refusals import LONGEST, cut, shown
+from vibro_sweep.tables.observables import WORDS
 
 from . import slips
 from .data import Foreign

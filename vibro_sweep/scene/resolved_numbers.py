@@ -19,9 +19,9 @@ from vibro_sweep.model.models import DEFAULT
 from vibro_sweep.model.models.declaration import UNITS
 from vibro_sweep.model.oscillator import System
 from vibro_sweep.model.stacks import dot, modulus
-from vibro_sweep.model.state import start
 from vibro_sweep.model.steady import gap_responses, static_states, steady_amplitudes
 from vibro_sweep.scene.scene import Scene
+from vibro_sweep.tables.coordinates import start
 
 SLAB = 100_000  # points whose numbers are computed at once
 

@@ -17,7 +17,7 @@ from vibro_sweep.model.grid import digest, grid
 from vibro_sweep.model.models import DEFAULT, MODELS
 from vibro_sweep.model.real import array_of
 from vibro_sweep.model.refusals import cut
-from vibro_sweep.model.state import START, start
+from vibro_sweep.tables.coordinates import START, start
 
 from .combinations import combination_problems, stop_problems
 from .form import built_form, scene_form

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from vibro_sweep.model.observables import WORDS, of_an_impact
+from vibro_sweep.tables.observables import WITH_STATES, of_an_impact
 
 from .problems import problem
 
@@ -39,7 +39,7 @@ def sample_numbers(masses: int) -> int:
 
 def scratch_numbers(scene: "Scene") -> int:
     """Doubles that an orbit needs while it is computed, and that the next one uses again."""
-    sought = any(WORDS[word].states for word in scene.observe)
+    sought = not WITH_STATES.isdisjoint(scene.observe)
     logged = "section" in scene.observe and scene.section.kind == "impact"
     masses = scene.system.masses
     return scene.record * (point_numbers(masses) * sought + impact_numbers(masses) * logged)

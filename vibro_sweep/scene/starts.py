@@ -6,7 +6,7 @@ import numpy as np
 
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.built import Built
-from vibro_sweep.model.state import START, state
+from vibro_sweep.tables.coordinates import START, state
 
 from .fields import Form
 from .form import FollowStart, RandomStart

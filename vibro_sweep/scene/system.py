@@ -3,13 +3,14 @@
 import numpy as np
 
 from vibro_sweep.model.any_oscillator import AnyOscillator
+from vibro_sweep.model.checked_numbers import check_value
 from vibro_sweep.model.general import Oscillator
 from vibro_sweep.model.models import DEFAULT, MODELS
 from vibro_sweep.model.models.declaration import OF_STOPS, entries
 from vibro_sweep.model.oscillator import System
-from vibro_sweep.model.parameters import Parameter, ParameterError, check_value
-from vibro_sweep.model.refusals import cut
-from vibro_sweep.model.state import START
+from vibro_sweep.model.refusals import ParameterError, cut
+from vibro_sweep.tables.coordinates import START
+from vibro_sweep.tables.quantity import Parameter
 
 from .axes import axis_values
 from .fields import Form
@@ -81,7 +82,7 @@ def system_of(form: Form, sweep, kind: str, masses: int) -> tuple[AnyOscillator 
             problems += [
                 f"sweep.{key}: {text}" for key in sorted(swept.intersection(each.name for each in entries(one, masses)))
             ]
-        if value is None and one.name not in first and not one.each and not (one.follows or one.optional):
+        if value is None and one.name not in first and not one.each and not one.optional:
             if one.name not in swept:
                 problems.append(f"system.{one.name}: missing; it must be given unless it is swept")
         elif value is not None and not one.each and not isinstance(value, str):

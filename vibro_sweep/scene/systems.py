@@ -8,7 +8,9 @@ from pydantic.config import JsonDict
 
 from vibro_sweep.model.models import DEFAULT, MODELS
 from vibro_sweep.model.models.declaration import OF_STOPS, WHICH_STOPS, Option
-from vibro_sweep.model.parameters import PHASE, PHYSICAL, POSITIVE, Parameter
+from vibro_sweep.model.oscillator import PHYSICAL
+from vibro_sweep.tables.parameters import PHASE
+from vibro_sweep.tables.quantity import POSITIVE, Parameter
 
 from .fields import TAU, WHICH, Form, Whole, given, number
 
@@ -45,10 +47,7 @@ PhysicalNumbers = create_model(
     __doc__="Physical quantities in SI units: kg, m, s and N. "
     "All but B0 and the numbers of the stops must be given, and of these R or k_stop; a sweep over `omega`, `b`, "
     "`offset` or `R` replaces the value that follows from `Omega`, `B`, `B0` or `R`.",
-    **{
-        one.name: number(one) if one.follows or one.optional or one.default is not None else _required(one)
-        for one in PHYSICAL
-    },
+    **{one.name: number(one) if one.optional or one.default is not None else _required(one) for one in PHYSICAL},
 )
 
 PhysicalSystemForm = create_model(

@@ -11,9 +11,9 @@ import numpy as np
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.built import Built
 from vibro_sweep.model.models import DEFAULT
-from vibro_sweep.model.observables import WORDS
 from vibro_sweep.model.refusals import shown
-from vibro_sweep.model.state import START, start, state
+from vibro_sweep.tables.coordinates import START, start, state
+from vibro_sweep.tables.observables import WORDS
 
 from .axes import axis_values
 from .data import Foreign, data_from

@@ -5,10 +5,10 @@ import h5py
 import numpy as np
 
 from vibro_sweep.model import catalogue
-from vibro_sweep.model.branch_file import SWEEP
 from vibro_sweep.model.refusals import cut
-from vibro_sweep.model.variable import Variable
 from vibro_sweep.model.wording import sentence
+from vibro_sweep.tables.file_columns import SWEEP
+from vibro_sweep.tables.quantity import Observable, Quantity
 
 # the attributes of a file that hold a number, or a word, for all points (scene/resolved_numbers.py)
 NUMBERS = (*catalogue.NUMBERS, "order", "expand_at", "transient", "settle", "record")
@@ -42,6 +42,13 @@ def describe(dataset: h5py.Dataset, units: str, long_name: str, description: str
     """Set its attributes for readers: `long_name` is short, for axes; `description` is a sentence."""
     for name, value in (("units", units), ("long_name", long_name), ("description", sentence(description))):
         set_text(dataset, name, value)
+
+
+def set_flags(dataset: h5py.Dataset, quantity: Quantity) -> None:
+    """The words of its codes, as CF has them."""
+    if quantity.flags:
+        dataset.attrs["flag_values"] = np.array(quantity.codes, quantity.dtype)
+        set_text(dataset, "flag_meanings", " ".join(quantity.flags))
 
 
 def text(of: h5py.File | h5py.Dataset, name: str) -> str:
@@ -110,7 +117,7 @@ def check_numbers(file: h5py.File) -> None:
 def check_own_dimensions(name: str, own: int) -> None:
     """Raise ValueError where a quantity has not so many dimensions, besides those of the sweep, as it should have."""
     known = catalogue.BY_NAME.get(name)
-    if isinstance(known, Variable) and len(known.dimensions) != own:
+    if isinstance(known, Observable) and len(known.dimensions) != own:
         raise ValueError(f"its datasets do not fit together: `{name}` and its own dimensions")
 
 

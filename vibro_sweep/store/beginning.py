@@ -12,7 +12,6 @@ from pathlib import Path
 import h5py
 
 from vibro_sweep.model.refusals import cut, not_allowed
-from vibro_sweep.model.status import NOT_COMPUTED
 from vibro_sweep.scene.differences import differences
 from vibro_sweep.store import appending, checks, names, parts
 from vibro_sweep.store.appending import LockedPart
@@ -24,6 +23,7 @@ from vibro_sweep.store.opening import StoreError, check_version, opened, skeleto
 from vibro_sweep.store.parts import PartError
 from vibro_sweep.store.ragged_checks import damage_of
 from vibro_sweep.store.writing import Complete, Writer, unfinished
+from vibro_sweep.tables.outcomes import NOT_COMPUTED
 
 MODES = ("new", "resume", "overwrite")
 NO_DATA = (".png", ".svg", ".pdf", ".yaml", ".yml")  # endings of other files of this program

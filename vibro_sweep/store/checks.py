@@ -6,10 +6,10 @@ from collections.abc import Iterator
 import h5py
 import numpy as np
 
-from vibro_sweep.model.status import NOT_COMPUTED
 from vibro_sweep.store.attributes import is_flat, texts
 from vibro_sweep.store.opening import axes_of, following_of
 from vibro_sweep.store.ragged_checks import damage_of
+from vibro_sweep.tables.outcomes import NOT_COMPUTED
 
 Piece = tuple[slice, ...]  # the box of a chunk; () for a dataset of one number
 

@@ -11,11 +11,11 @@ import h5py
 import numpy as np
 
 from vibro_sweep import __version__
-from vibro_sweep.model.branch_file import SWEEP
 from vibro_sweep.scene import Scene, resolved_numbers
 from vibro_sweep.store import datasets, heap, layout, parts
 from vibro_sweep.store.attributes import set_text, set_texts, set_value, text
 from vibro_sweep.store.sink import LIBVER
+from vibro_sweep.tables.file_columns import SWEEP
 
 
 class Subject(NamedTuple):

@@ -10,13 +10,11 @@ import numpy as np
 
 from vibro_sweep.model.built import stored_names
 from vibro_sweep.model.catalogue import AXES
-from vibro_sweep.model.dimensions import Dimension
-from vibro_sweep.model.parameters import Parameter
-from vibro_sweep.model.units import unit_in
-from vibro_sweep.model.variable import Variable
 from vibro_sweep.scene import Scene, resolved_numbers
-from vibro_sweep.store.attributes import MATRIX, describe, set_text, set_value
+from vibro_sweep.store.attributes import MATRIX, describe, set_flags, set_text
 from vibro_sweep.store.layout import chunk_shape, coordinates, dimensions, quantities
+from vibro_sweep.tables.quantity import Quantity
+from vibro_sweep.tables.units import unit_in
 
 # To Fletcher-32 two zero bytes are the same as two bytes of ones, so that 0 could become -65536 unseen. Adler-32, which
 # comes with gzip, distinguishes them; level 0 compresses nothing, and costs no time.
@@ -53,8 +51,9 @@ def create(file: h5py.File, scene: Scene) -> None:
             set_text(dataset, "coordinates", " ".join(following))
         for i, dimension in enumerate(lead):
             dataset.dims[i].attach_scale(file[dimension])
+        set_flags(dataset, quantity)
         for attribute, value in quantity.attributes.items():
-            set_value(dataset, attribute, value)
+            dataset.attrs[attribute] = value
 
 
 def _create_following(file: h5py.File, scene: Scene) -> tuple[str, ...]:
@@ -103,7 +102,7 @@ def write_following(file: h5py.File, scene: Scene) -> None:
             file[name][box] = values[name]
 
 
-def _describe(dataset: h5py.Dataset, of: Parameter | Dimension | Variable, scene: Scene) -> None:
+def _describe(dataset: h5py.Dataset, of: Quantity, scene: Scene) -> None:
     describe(dataset, unit_in(of.units, scene.system.units), of.long_name, of.text)
 
 

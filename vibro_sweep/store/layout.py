@@ -4,18 +4,16 @@ import math
 
 import numpy as np
 
-from vibro_sweep.model.dimensions import DIMENSIONS, averaged
-from vibro_sweep.model.dimensions import dimensions as dimensions_of
-from vibro_sweep.model.exponents import RUNNING, periods_read
-from vibro_sweep.model.observables import SETTLE, asked_for
-from vibro_sweep.model.trajectory_variables import TRAJECTORY
-from vibro_sweep.model.variable import Variable
 from vibro_sweep.scene import Scene, resolved_numbers
+from vibro_sweep.tables.exponents import RUNNING, periods_read
+from vibro_sweep.tables.observables import DIMENSIONS, SETTLE, TRAJECTORY, asked_for, averaged
+from vibro_sweep.tables.observables import dimensions as dimensions_of
+from vibro_sweep.tables.quantity import Observable
 
 CHUNK_BYTES = 2**17  # read at once
 
 
-def quantities(scene: Scene) -> dict[str, Variable]:
+def quantities(scene: Scene) -> dict[str, Observable]:
     """The datasets that a scene asks for; what it does not observe is not there."""
     asked = scene.observe | ({TRAJECTORY} if scene.trajectory else set()) | ({SETTLE} if scene.settle else set())
     system = scene.system
@@ -65,7 +63,7 @@ def size(scene: Scene) -> int:
     return total + 8 * sum(extents.values())
 
 
-def dimensions(scene: Scene, quantity: Variable) -> tuple[str, ...]:
+def dimensions(scene: Scene, quantity: Observable) -> tuple[str, ...]:
     """Names of a dataset's dimensions, in order."""
     return (*scene.sweep, *(["start"] if scene.n_starts > 1 else []), *quantity.dimensions)
 

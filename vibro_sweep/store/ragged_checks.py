@@ -9,11 +9,10 @@ from typing import NamedTuple
 import h5py
 import numpy as np
 
-from vibro_sweep.model.branch_file import BRANCHES, CHART, RAGGED, WINDOWS, columns
-from vibro_sweep.model.column import Column
-from vibro_sweep.model.curve_columns import OF_EDGES
 from vibro_sweep.model.refusals import cut, shown
 from vibro_sweep.store.attributes import check_dataset, quantities_of, scales_of, text, texts
+from vibro_sweep.tables.file_columns import BRANCHES, CHART, OF_EDGES, RAGGED, WINDOWS, columns
+from vibro_sweep.tables.quantity import Quantity
 
 KINDS = (BRANCHES, WINDOWS, CHART)
 
@@ -64,7 +63,7 @@ def check(kind: str, parameters: list[str], found: Mapping[str, Stored]) -> None
                 raise ValueError(f"its datasets do not fit together: {', '.join(counts)} and `{dimension}`")
 
 
-def _check_column(column: Column, one: Stored, lengths: Mapping[str, int]) -> None:
+def _check_column(column: Quantity, one: Stored, lengths: Mapping[str, int]) -> None:
     if one.values.dtype.kind not in "if":
         raise ValueError(f"`{column.name}` holds no numbers")
     if one.dimensions != column.dimensions:

@@ -7,12 +7,12 @@ from typing import Any, NamedTuple
 import h5py
 import numpy as np
 
-from vibro_sweep.model.branch_file import RAGGED
-from vibro_sweep.model.column import Column
-from vibro_sweep.store.attributes import describe, set_text, set_texts
+from vibro_sweep.store.attributes import describe, set_flags, set_text, set_texts
 from vibro_sweep.store.creating import Subject, complete, ragged_run, skeleton_of
 from vibro_sweep.store.datasets import CHECKSUMS, create_length
 from vibro_sweep.store.parts import new_run_id
+from vibro_sweep.tables.file_columns import RAGGED
+from vibro_sweep.tables.quantity import Quantity
 
 CHUNK = 2**14  # numbers
 
@@ -21,7 +21,7 @@ class RaggedContents(NamedTuple):
     """All that a file holds."""
 
     subject: Subject
-    columns: list[Column]
+    columns: list[Quantity]
     arrays: dict[str, np.ndarray]
 
     def image(self, made_by: dict[str, Any]) -> io.BytesIO:
@@ -44,7 +44,7 @@ class RaggedContents(NamedTuple):
             _create(file, column, self.arrays[column.name])
 
 
-def _create(file: h5py.File, column: Column, values: np.ndarray) -> None:
+def _create(file: h5py.File, column: Quantity, values: np.ndarray) -> None:
     values = np.asarray(values, column.dtype)
     how: dict[str, Any] = {}
     if values.size:
@@ -52,9 +52,7 @@ def _create(file: h5py.File, column: Column, values: np.ndarray) -> None:
         how = {"chunks": (rows, *values.shape[1:]), **CHECKSUMS}
     dataset = file.create_dataset(column.name, data=values, **how)
     describe(dataset, column.units, column.label, column.text)
-    if column.flags:
-        dataset.attrs["flag_values"] = np.arange(len(column.flags), dtype=column.dtype)
-        set_text(dataset, "flag_meanings", " ".join(column.flags))
+    set_flags(dataset, column)
     for dimension, counts in RAGGED.items():
         if counts == (column.name,):  # CF, 9.3.3: contiguous ragged arrays
             set_text(dataset, "sample_dimension", dimension)

@@ -12,13 +12,13 @@ from typing import Any, BinaryIO, NamedTuple
 import h5py
 import numpy as np
 
-from vibro_sweep.model.status import NOT_COMPUTED
 from vibro_sweep.store import checks, names, parts
 from vibro_sweep.store.appending import LockedPart, said
 from vibro_sweep.store.creating import complete, now, seal
 from vibro_sweep.store.image import Box, Frame, Index
 from vibro_sweep.store.opening import StoreError
 from vibro_sweep.store.sink import Sink, changing
+from vibro_sweep.tables.outcomes import NOT_COMPUTED
 
 Arrays = dict[str, np.ndarray]
 

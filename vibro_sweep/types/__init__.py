@@ -22,9 +22,9 @@ from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.grazing import Grazing
 from vibro_sweep.model.linear import Family, Linear
 from vibro_sweep.model.modes import Modes
-from vibro_sweep.model.picture_kinds import Plottable
 from vibro_sweep.model.window_families import Family as WindowFamily
 from vibro_sweep.scene import Continuation, Scene, Section, Start, Trajectory
+from vibro_sweep.tables.picture_kinds import Plottable
 
 __all__ = [
     "AnyOscillator",

@@ -1,13 +1,13 @@
 """Which of several orbits of one system end on the same attractor, from what is known of each without the others.
 
-That is its period and seven averages (`averaged` of model/dimensions.py), which all orbits of an attractor share
+That is its period and seven averages (`averaged` of tables/observables.py), which all orbits of an attractor share
 whatever their phase. Mirror images (X -> -X, t -> t + T/2) share period and exponents; their section points, and so the
 averages of these, differ.
 """
 
 import numpy as np
 
-from vibro_sweep.model.exponents import sign_of
+from vibro_sweep.tables.exponents import sign_of
 
 BAD, NOT_SETTLED = -1, 0  # of an orbit without attractor
 ERRORS = 4  # to each side of an average; where the ranges of two orbits meet, the averages may be the same

@@ -1,7 +1,7 @@
 """A branch as plain arrays, with which it travels between processes and lies in files; and its orbits from these.
 
-The arrays, `SHAPES`, have the names that they have in files. Words are codes of model/bifurcations.py
-and model/outcomes.py. An index that does not exist is -1.
+The arrays, `SHAPES`, have the names that they have in files. Words are codes of tables/bifurcations.py
+and tables/outcomes.py. An index that does not exist is -1.
 """
 
 from collections.abc import Mapping
@@ -16,10 +16,10 @@ from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.continuation.starting_orbit import keeps_symmetry
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit, orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.model.bifurcations import BIRTHS, CODES, CRITICALITIES, KINDS, TYPES
 from vibro_sweep.model.linear import family_of, forcing_period
-from vibro_sweep.model.outcomes import BRANCHES
-from vibro_sweep.model.state import state
+from vibro_sweep.tables.bifurcations import BIRTHS, CODES, CRITICALITIES, KINDS, TYPES
+from vibro_sweep.tables.coordinates import state
+from vibro_sweep.tables.outcomes import BRANCHES, names
 
 # n points, K impacts, s special points, N masses
 SHAPES = {
@@ -46,7 +46,7 @@ def arrays_of(branch: Branch, origin: float) -> Arrays:
     words = state(data["multiplier_re"].shape[1] // 2)
     result = outline(start, parameter, branch._frame, branch._rows) | common(branch, start, (parameter,), p, CODES)
     result |= {
-        "branch_status": np.int8(list(BRANCHES).index(branch.status)),
+        "branch_status": np.int8(names(BRANCHES).index(branch.status)),
         "branch_origin": np.int32(np.argmin(np.abs(p - origin))),
         "state": np.stack([data[name] for name in words], axis=-1),
         **{

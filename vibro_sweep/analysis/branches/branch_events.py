@@ -13,7 +13,7 @@ from vibro_sweep.analysis.periodic.solution import NO_SPEED
 from vibro_sweep.engine.continuation.branch_tests import PASSED
 from vibro_sweep.engine.continuation.workspace import NAMES
 from vibro_sweep.engine.impulses.pairs import ON_PAIR, ON_SQUARE
-from vibro_sweep.model.bifurcations import TYPES
+from vibro_sweep.tables.bifurcations import TYPES
 
 ROUNDED = 1e-9  # of a step, by which rounding may put an event behind its end
 

@@ -16,9 +16,9 @@ from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit, found_or
 from vibro_sweep.analysis.periodic.seeds_of_free_motion import touches_of_free_motion, with_touches
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.model.arguments import check_type
-from vibro_sweep.model.bifurcations import BY_NAME, WAYS
 from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.refusals import not_allowed
+from vibro_sweep.tables.bifurcations import BY_NAME, WAYS
 
 BESIDE = 1e-4  # relative distance of the parameter from a graze
 APART = (1e-2, 1e-3, 1e-4)  # of 1/omega: the flight between the two contacts of an orbit beside a split

@@ -8,7 +8,7 @@ from vibro_sweep.analysis.continuation.point import Point
 from vibro_sweep.analysis.periodic.solution import NO_SPEED
 from vibro_sweep.engine.continuation.branch_tests import FAR_OUTSIDE
 from vibro_sweep.engine.impulses.pairs import ON_PAIR, ON_SQUARE, exchanged, keeps_side
-from vibro_sweep.model.bifurcations import BY_NAME
+from vibro_sweep.tables.bifurcations import BY_NAME
 
 PRODUCT_ONE = 1e-6  # of a product of two multipliers: within it, it is 1
 COMPLEX = 1e-9  # imaginary part of a multiplier that is not real

@@ -11,7 +11,7 @@ from vibro_sweep.analysis.continuation.events import LocatedEvent, Test
 from vibro_sweep.analysis.continuation.point import Point, along
 from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve
 from vibro_sweep.engine.continuation.between_points import FARTHER
-from vibro_sweep.model.bifurcations import BY_NAME
+from vibro_sweep.tables.bifurcations import BY_NAME
 
 SHARES = (0.5, 0.4, 0.6, 0.3)  # of the way to the next point, where the first lies on a bifurcation by chance
 APART = 1e-9  # share of a step: bifurcations that are nearer to each other are not separated

@@ -16,7 +16,7 @@ from vibro_sweep.analysis.continuation.point import Point
 from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses.pairs import ON_SQUARE
-from vibro_sweep.model.bifurcations import name_of
+from vibro_sweep.tables.bifurcations import name_of
 
 BEFORE = 0.02, 0.1, 0.4  # of the way to a birth, beside which a multiplier is 1 to rounding
 NEAR = 0.1  # in scaled units: a birth that rounding beside it may hide

@@ -39,7 +39,7 @@ from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation import stepper
 from vibro_sweep.engine.continuation.curve_tests import TOUCHING
 from vibro_sweep.engine.continuation.workspace import THETA, Place
-from vibro_sweep.model.bifurcations import CODIMENSION_TWO, name_of
+from vibro_sweep.tables.bifurcations import CODIMENSION_TWO, name_of
 
 AMPLITUDES = (0.01, 0.005, 0.0025, 0.00125, 0.02, 0.04)  # in the units of a curve, in the order in which they are tried
 REACH = 0.2  # of the parameters around the point, relative

@@ -1,6 +1,6 @@
 """A bifurcation curve as plain arrays, with which it travels between processes and lies in files; and back.
 
-The arrays, `SHAPES`, have the names that they have in files. Words are codes of model/bifurcations.py.
+The arrays, `SHAPES`, have the names that they have in files. Words are codes of tables/bifurcations.py.
 """
 
 from collections.abc import Sequence
@@ -19,9 +19,9 @@ from vibro_sweep.analysis.curves.curve_start import slow_impacts
 from vibro_sweep.analysis.periodic.periodic_orbit import orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation.problem import GRAZE
-from vibro_sweep.model.bifurcations import CODES_OF_CURVES, CODIMENSION_TWO, CURVES
 from vibro_sweep.model.linear import Linear, gap_response
-from vibro_sweep.model.state import state
+from vibro_sweep.tables.bifurcations import CODES_OF_CURVES, CODIMENSION_TWO, CURVES
+from vibro_sweep.tables.coordinates import state
 
 # n points, K impacts of the whole orbit, s special points, N masses
 SHAPES = {

@@ -14,7 +14,7 @@ from vibro_sweep.analysis.periodic.contact_numbers import has_corner, is_smooth
 from vibro_sweep.engine.continuation.curve_tests import TOUCHING
 from vibro_sweep.engine.continuation.problem import FOLD, GRAZE, TORUS
 from vibro_sweep.engine.continuation.workspace import CURVE_TESTS, NAMES, TEST, THETA, Place
-from vibro_sweep.model.bifurcations import CODIMENSION_TWO
+from vibro_sweep.tables.bifurcations import CODIMENSION_TWO
 
 # (kind of curve, what changes its sign) -> types, by the sigma of their orbits; angles of a pair
 ENDS_OF_CONTACTS = {"split": TEST.hold, "unrelaxed": TEST.relaxed}  # where a curve ends

@@ -20,8 +20,8 @@ from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation.workspace import THETA
 from vibro_sweep.model.arguments import check_type
-from vibro_sweep.model.bifurcations import CODIMENSION_TWO, name_of
 from vibro_sweep.model.errors import ArgumentError
+from vibro_sweep.tables.bifurcations import CODIMENSION_TWO, name_of
 
 SINGULAR = 1e-8  # least singular value of G(mu), of its largest, below which mu is a multiplier
 ON_CIRCLE = 1e-8  # | |mu| - 1 | of a Neimark-Sacker pair

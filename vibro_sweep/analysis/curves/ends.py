@@ -22,7 +22,7 @@ from vibro_sweep.analysis.curves.curve_events import event_near
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation.problem import FOLD, GRAZE, TORUS
 from vibro_sweep.engine.continuation.workspace import THETA, Place
-from vibro_sweep.model.bifurcations import CODIMENSION_TWO, name_of
+from vibro_sweep.tables.bifurcations import CODIMENSION_TWO, name_of
 
 NEAR = 0.2  # in the units of the curve: how far from the expected end the other curve is entered
 SHORTEST = 1e-6

@@ -24,7 +24,7 @@ from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.general import Oscillator
 from vibro_sweep.model.linear import Family, family_of, forcing_period
 from vibro_sweep.model.oscillator import System
-from vibro_sweep.model.outcomes import ORBITS
+from vibro_sweep.tables.outcomes import ORBITS, named
 
 if TYPE_CHECKING:
     import xarray
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 class PeriodicOrbit(Result):
     """A periodic orbit of a linear oscillator between stops. Times are absolute and nondimensional.
 
-    status : "ok", or why it is not an orbit (`model.outcomes.ORBITS`); numbers then are those found, or empty
+    status : "ok", or why it is not an orbit (`tables.outcomes.ORBITS`); numbers then are those found, or empty
 
     Examples
     --------
@@ -201,7 +201,7 @@ class PeriodicOrbit(Result):
         Raises ValueError for no times, or for times beyond 10^9 forcing periods.
         """
         if self._solution is None:
-            raise ArgumentError(f"this orbit has no motion: {ORBITS[self.status].text}")
+            raise ArgumentError(f"this orbit has no motion: {named(ORBITS, self.status).text}")
         q = self._solution.family.linear
         length, latest = self.period * forcing_period(q), LATEST * forcing_period(q)
         allowed = f"within {LATEST} forcing periods of 0: beyond, times resolve no motion"
@@ -275,7 +275,7 @@ class PeriodicOrbit(Result):
 
         q = self._solution.family.linear if self._solution is not None else None
         if q is None:
-            raise ArgumentError(f"this orbit has no motion: {ORBITS[self.status].text}")
+            raise ArgumentError(f"this orbit has no motion: {named(ORBITS, self.status).text}")
         length = self.period * forcing_period(q)
         title = f"{self.itinerary or 'free'}, period {self.period}, {'stable' if self.stable else 'unstable'}"
         if shows_force(kind):

@@ -8,9 +8,9 @@ from vibro_sweep.analysis.single.result import columns_of
 from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.linear import Linear
 from vibro_sweep.model.models.declaration import UNITS
-from vibro_sweep.model.state import state
 from vibro_sweep.model.stop_force import force_of
-from vibro_sweep.model.units import unit_in
+from vibro_sweep.tables.coordinates import state
+from vibro_sweep.tables.units import unit_in
 
 if TYPE_CHECKING:
     import xarray

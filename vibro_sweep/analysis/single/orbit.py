@@ -17,7 +17,6 @@ from vibro_sweep.engine.halting import interruptible
 from vibro_sweep.engine.motion import orbits
 from vibro_sweep.engine.one_system import Engine, is_paper, plan_of
 from vibro_sweep.engine.records import new_results, starts_at
-from vibro_sweep.model import status
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.arguments import LATEST, checked_count, checked_state, checked_times
 from vibro_sweep.model.errors import ArgumentError
@@ -25,6 +24,7 @@ from vibro_sweep.model.oscillator import checked_system
 from vibro_sweep.model.own_time import rate_of, with_velocities
 from vibro_sweep.model.real import number_of
 from vibro_sweep.model.refusals import not_allowed
+from vibro_sweep.tables.outcomes import OK, status_of
 
 if TYPE_CHECKING:
     import xarray
@@ -55,7 +55,7 @@ class Status(str):
     chatters: int
 
     def __new__(cls, code: int, chatters: int) -> Status:
-        status_name = super().__new__(cls, status.meaning(code))
+        status_name = super().__new__(cls, status_of(code).name)
         status_name.code, status_name.chatters = code, chatters
         return status_name
 
@@ -219,7 +219,7 @@ def simulate(system: AnyOscillator, state: ArrayLike, periods: int, start_time: 
     hits, rests, contacts, chatters, outcome = interruptible(
         _carried, engine, section[done:], halt=engine.ensemble.halt, cells=engine.steps * periods
     )
-    if outcome != status.OK:
+    if outcome != OK:
         reached = int(engine.orbit["period"][0]) - math.ceil(start_time / engine.period)
         section[max(reached + 1, 0) :] = np.nan
     end = (math.ceil(start_time / engine.period) + periods) * engine.period
@@ -248,9 +248,9 @@ _Carried = tuple[list[np.ndarray], list[np.ndarray], list[np.ndarray], int, int]
 def _carried(engine: Engine, section: np.ndarray) -> _Carried:
     """Carry the orbit over as many periods as `section` (n, 2 N) has rows: impacts, rests, contacts, chatters, a
     status."""
-    hits, rests, contacts, chatters, room, outcome = [], [], [], 0, ROOM, status.OK
+    hits, rests, contacts, chatters, room, outcome = [], [], [], 0, ROOM, OK
     done, open_contact = 0, np.empty((0, LOGGED))
-    while done < len(section) and outcome == status.OK:
+    while done < len(section) and outcome == OK:
         before = engine.before()
         records = orbits.new_records(1, impacts=room, rests=room, masses=engine.kind.masses)
         log = engine.new_log(room, open_contact)
@@ -259,7 +259,7 @@ def _carried(engine: Engine, section: np.ndarray) -> _Carried:
         logged = max(engine.orbit["impacts_logged"][0], engine.orbit["rests_logged"][0], touched)
         if logged > room:
             engine.go_back(before)
-            room, outcome = 2 * int(logged), status.OK
+            room, outcome = 2 * int(logged), OK
             continue
         hits.append(records.impacts[0, : engine.orbit["impacts_logged"][0]])
         rests.append(records.rests[0, : engine.orbit["rests_logged"][0]])

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from vibro_sweep.analysis.branches.branch_arrays import Arrays
-from vibro_sweep.model.bifurcations import BY_NAME, CURVES
+from vibro_sweep.tables.bifurcations import BY_NAME, CURVES
 
 SLACK = 0.25  # of a cell: curves are drawn by chords
 

@@ -19,11 +19,11 @@ from vibro_sweep.analysis.periodic.one_thread import one_thread
 from vibro_sweep.analysis.windows.edges import Edges, Plane, edges_of, passing
 from vibro_sweep.analysis.windows.job import lies_on
 from vibro_sweep.analysis.windows.stretch import stable_end
-from vibro_sweep.model.outcomes import EDGES
+from vibro_sweep.tables.outcomes import EDGES, codes
 
 SHARE = 12  # edges of a region, of which one is sent in a round
 BEYOND = 0.25  # of the way to the neighbour: so far behind it the orbit is followed
-_CODES = {name: code for code, name in enumerate(EDGES)}
+_CODES = codes(EDGES)
 
 
 class Probe(NamedTuple):

@@ -8,18 +8,17 @@ from typing import Any, Protocol
 import numpy as np
 
 from vibro_sweep.model.arguments import checked_word
-from vibro_sweep.model.branch_file import SWEEP
 from vibro_sweep.model.built import BUILD
+from vibro_sweep.model.checked_numbers import range_of
 from vibro_sweep.model.errors import ArgumentError
-from vibro_sweep.model.outcomes import REASONS
-from vibro_sweep.model.parameters import range_of
 from vibro_sweep.model.refusals import cut
-from vibro_sweep.model.state import state
-from vibro_sweep.model.status import NOT_COMPUTED, is_valid
+from vibro_sweep.tables.coordinates import state
+from vibro_sweep.tables.file_columns import SWEEP
+from vibro_sweep.tables.outcomes import NOT_COMPUTED, REASONS, codes, is_valid
 
 BEYOND = 1.0  # of the sweep's length: so far beyond its ends windows are followed
 BEFORE = 0.25  # of the way from where a number must not be: there a frequency's period is infinite
-REASON_CODES = {name: code for code, name in enumerate(REASONS)}
+REASON_CODES = codes(REASONS)
 
 
 class Contents(Protocol):

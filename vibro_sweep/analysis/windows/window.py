@@ -88,7 +88,7 @@ class Windows(FileResult, list[Window]):
 
     parameter : the number along which they were followed
     window : index of the window of each orbit of the sweep, (*sweep, starts), -1 where there is none
-    reason : codes of `model.outcomes.REASONS`, of the same shape; 0 in a window
+    reason : codes of `tables.outcomes.REASONS`, of the same shape; 0 in a window
     unvisited : stretches of windows on which the sweep shows other attractors only, each with a start for the window's
         orbit: .window (index), .lo, .hi, .values, .at, .orbit, .state
 

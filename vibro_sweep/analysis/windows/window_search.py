@@ -17,7 +17,7 @@ from vibro_sweep.analysis.windows.continued import continued
 from vibro_sweep.analysis.windows.job import Job
 from vibro_sweep.analysis.windows.members import members
 from vibro_sweep.analysis.windows.rows import REASON_CODES, Row
-from vibro_sweep.model.outcomes import ATTRACTORS
+from vibro_sweep.tables.outcomes import ATTRACTORS
 
 FAR = 8  # values without a point of the same period end a group
 SAME = 1e-9  # of the range: ends that differ by less, of windows of the same itinerary and period, are one

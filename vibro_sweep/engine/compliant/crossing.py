@@ -26,7 +26,7 @@ from vibro_sweep.engine.simd.jit import jit, noinline
 from vibro_sweep.engine.simd.memory import row
 from vibro_sweep.engine.tables.flight import bounds, load
 from vibro_sweep.engine.tables.resting import bound_third_over
-from vibro_sweep.model import status
+from vibro_sweep.tables import outcomes as status
 
 LARGEST = 1e100  # of a state: its square has to be a number
 NEAR = 8.0 * 2.0**-52  # of the place of a stop, or the depth of its preload: lower bounces are a rest on it

@@ -16,7 +16,7 @@ from vibro_sweep.engine.continuation.problem import width_of
 from vibro_sweep.engine.impulses.extremes import PIECES
 from vibro_sweep.engine.impulses.taylor_orders import ORDER
 from vibro_sweep.engine.simd.memory import new_lines, record
-from vibro_sweep.model.bifurcations import CODIMENSION_TWO, TYPES
+from vibro_sweep.tables.bifurcations import CODIMENSION_TWO, TYPES
 
 FIRST, SECOND, THETA = range(3)  # of `Place.p`: both parameters, and theta of a Neimark-Sacker curve
 TERMS = 10  # of a power series in z and its conjugate, to third order

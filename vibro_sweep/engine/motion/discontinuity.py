@@ -30,7 +30,7 @@ from vibro_sweep.engine.simd.lanes import alike
 from vibro_sweep.engine.tables.flight import decaying
 from vibro_sweep.engine.variational import tangent_flight
 from vibro_sweep.engine.variational.orthonormal import watch
-from vibro_sweep.model import status
+from vibro_sweep.tables import outcomes as status
 
 
 @jit

@@ -35,7 +35,7 @@ from vibro_sweep.engine.simd.lanes import LANES, lanes_of, lowest, number
 from vibro_sweep.engine.simd.memory import put, row
 from vibro_sweep.engine.tables.flight import load
 from vibro_sweep.engine.variational import tangent, tangent_flight
-from vibro_sweep.model import status
+from vibro_sweep.tables import outcomes as status
 
 CELLS_BETWEEN_LOOKS = 2**21  # cells over which orbits are carried (some tenths of a second) before `halt` is read
 

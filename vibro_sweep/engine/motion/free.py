@@ -29,7 +29,7 @@ from vibro_sweep.engine.motion.scan import state_at
 from vibro_sweep.engine.simd.jit import exported, jit
 from vibro_sweep.engine.simd.memory import put, row
 from vibro_sweep.engine.tables.flight import ORDER, bounds, load
-from vibro_sweep.model import status
+from vibro_sweep.tables import outcomes as status
 
 FINEST = 2.0**-24
 HALVINGS = 64  # of an interval with one turning point

@@ -21,7 +21,7 @@ from vibro_sweep.engine.simd.memory import row
 from vibro_sweep.engine.tables.flight import ORDER, bounds, evaluate, load
 from vibro_sweep.engine.tables.twofold import add
 from vibro_sweep.engine.variational import tangent, tangent_flight
-from vibro_sweep.model import status
+from vibro_sweep.tables import outcomes as status
 
 MOST_EVENTS = 100_000  # impacts, grazes and rests in one forcing period; an orbit that needs more gets a status
 EXPLAINED = 64.0 * 2.0**-52  # of the sizes of the terms of x1: a distance from a stop that rounding can explain

@@ -11,7 +11,7 @@ from vibro_sweep.engine.simd.memory import put, record, row
 from vibro_sweep.engine.tables.flight import ORDER, evaluate, width_of
 from vibro_sweep.engine.tables.products import change_within
 from vibro_sweep.engine.tables.twofold import add
-from vibro_sweep.model import status
+from vibro_sweep.tables import outcomes as status
 
 FARTHEST = 2.0**127  # where a stop is at most for the search, which is in single precision: an infinite x1 is outside
 

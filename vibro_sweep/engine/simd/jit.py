@@ -1,7 +1,7 @@
 """All jit policy in one file: nogil, fused multiply-adds as the only fastmath, no reference counts, cached on disk.
 
 numba's cache does not see an edit in a helper's file, so the cache folder is named by a hash of all kernel sources:
-those of the engine, and what kernels have of the model.
+those of the engine, and what kernels have of the tables.
 """
 
 import contextlib
@@ -53,15 +53,15 @@ def _digest(name: str) -> int:
 for _kind in (types.Record, types.NamedTuple, types.NamedUniTuple):
     _kind.mangling_args = _mangling
 
-ENGINE, MODEL = Path(__file__).parents[1], Path(__file__).parents[2] / "model"
-SHARED = "bifurcations.py", "exponents.py", "status.py"  # of the model: constants and formulas in kernels
+ENGINE, TABLES = Path(__file__).parents[1], Path(__file__).parents[2] / "tables"
+SHARED = "bifurcations.py", "exponents.py", "outcomes.py"  # of the tables: constants and formulas in kernels
 
 
 @functools.cache  # of the sources as they were imported
 def source_hash() -> str:
     """Names the folder of compiled kernels; what all numbers depend on is said by driver/code_hash.py."""
     digest = hashlib.sha256()
-    for source in [*sorted(ENGINE.rglob("*.py")), *(MODEL / name for name in SHARED)]:
+    for source in [*sorted(ENGINE.rglob("*.py")), *(TABLES / name for name in SHARED)]:
         digest.update(source.read_bytes())
     return digest.hexdigest()[:16]
 

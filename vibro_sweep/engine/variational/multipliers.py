@@ -26,7 +26,7 @@ from vibro_sweep.engine.variational import tangent
 from vibro_sweep.engine.variational.growth import excess
 from vibro_sweep.engine.variational.multiplier_groups import AGAIN, BESIDE, find_multipliers
 from vibro_sweep.engine.variational.orthonormal import columns_of, orthonormalise_closely, place_of
-from vibro_sweep.model import status
+from vibro_sweep.tables import outcomes as status
 
 ASIDE = 1e4  # units of rounding of the state by which the third begins beside the orbit, and
 OFF = 16.0  # by how many of them rounding at one impact moves the orbit; that at others has nothing to do with it

@@ -21,7 +21,7 @@ import numpy as np
 
 from vibro_sweep.engine.simd.jit import exported, jit
 from vibro_sweep.engine.variational.propagator import advance
-from vibro_sweep.model import status
+from vibro_sweep.tables import outcomes as status
 
 
 class Equations(NamedTuple):

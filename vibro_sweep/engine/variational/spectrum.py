@@ -13,7 +13,8 @@ from vibro_sweep.engine.point_tables import divergence_of
 from vibro_sweep.engine.simd.jit import inline, jit
 from vibro_sweep.engine.variational import tangent, tangent_at_rest, tangent_flight
 from vibro_sweep.engine.variational.orthonormal import CONDITION
-from vibro_sweep.model import exponents, status
+from vibro_sweep.tables import exponents
+from vibro_sweep.tables import outcomes as status
 
 BATCHES = 20  # parts of the recorded time whose scatter gives the error of an exponent
 OF_LOGARITHMS = 2.0**-50  # rounding of their sum

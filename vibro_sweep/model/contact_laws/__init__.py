@@ -16,3 +16,5 @@ def _found() -> dict[str, ContactLaw]:
 
 LAWS = _found()
 RIGID = LAWS["rigid"]
+STOP_NUMBERS = tuple(one for law in LAWS.values() for one in law.numbers_of_both)
+OTHER_STOPS = tuple(one for one in STOP_NUMBERS if one not in RIGID.numbers_of_both)  # of stops that are not rigid

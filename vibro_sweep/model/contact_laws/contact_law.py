@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
-from vibro_sweep.model.parameter import Parameter
+from vibro_sweep.tables.quantity import Parameter
 
 
 class Option(NamedTuple):

@@ -1,15 +1,15 @@
 """The rigid stop, which the paper has (eq. 4)."""
 
 from vibro_sweep.model.contact_laws.contact_law import ContactLaw
-from vibro_sweep.model.parameter import FRACTION, Parameter
+from vibro_sweep.tables.quantity import FRACTION, Parameter
 
 RESTITUTION = Parameter(
-    "R", "R", "1", FRACTION, "coefficient of restitution", "coefficient of restitution of a rigid stop", "(4)",
+    "R", "coefficient of restitution", "coefficient of restitution of a rigid stop", "R", "1", FRACTION, "(4)",
     optional=True,
 )  # fmt: skip
 RESTITUTION_LEFT = Parameter(
-    "R_left", r"R_{\mathrm{left}}", "1", FRACTION, "restitution on the left",
-    "coefficient of restitution of the left stop; left out: R", follows="R",
+    "R_left", "restitution on the left", "coefficient of restitution of the left stop; left out: R",
+    r"R_{\mathrm{left}}", "1", FRACTION, optional=True, follows="R",
 )  # fmt: skip
 
 LAW = ContactLaw(

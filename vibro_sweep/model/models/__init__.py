@@ -5,8 +5,7 @@ import pkgutil
 from importlib import import_module
 
 from vibro_sweep.model.models.declaration import Model
-from vibro_sweep.model.parameters import ParameterError
-from vibro_sweep.model.refusals import cut
+from vibro_sweep.model.refusals import ParameterError, cut
 
 _ORDER = ("two_mass", "one_mass", "ball_in_cavity", "chain", "linear")  # others follow by name
 

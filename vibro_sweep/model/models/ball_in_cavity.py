@@ -1,20 +1,15 @@
 """A free ball in the cavity of a sprung host: the impact damper, or vibro-impact nonlinear energy sink."""
 
+from dataclasses import replace
+
 import numpy as np
 
+from vibro_sweep.model.contact_laws import STOP_NUMBERS
 from vibro_sweep.model.linear import Linear, contact
 from vibro_sweep.model.models.declaration import OF_STOPS, UNITS, Model
-from vibro_sweep.model.parameters import (
-    CLEARANCE,
-    FREQUENCY,
-    NOT_NEGATIVE,
-    NUMBER,
-    PHASE,
-    POSITIVE,
-    STOP_NUMBERS,
-    Parameter,
-)
 from vibro_sweep.model.stacks import matrix, vector
+from vibro_sweep.tables.parameters import CLEARANCE, FREQUENCY, PHASE
+from vibro_sweep.tables.quantity import NOT_NEGATIVE, POSITIVE, Parameter
 
 
 def ball_in_cavity(*, mass_ratio, zeta, F, omega, tau, **stops) -> Linear:
@@ -54,18 +49,17 @@ MODEL = Model(
     numbers=(
         Parameter(
             "mass_ratio",
-            r"\epsilon",
-            "1",
-            POSITIVE,
             "mass ratio",
             "mass of the ball over that of the host",
+            r"\epsilon",
+            range=POSITIVE,
             free_motion=True,
         ),
-        Parameter("zeta", r"\zeta", "1", NOT_NEGATIVE, "damping ratio", "damping ratio of the host", free_motion=True),
-        Parameter("F", "F", "N", NUMBER, "forcing amplitude", "amplitude of the force on the host", free_motion=True),
+        Parameter("zeta", "damping ratio", "damping ratio of the host", r"\zeta", "1", NOT_NEGATIVE, free_motion=True),
+        Parameter("F", "forcing amplitude", "amplitude of the force on the host", "F", "N", free_motion=True),
         FREQUENCY,
         *STOP_NUMBERS,
-        CLEARANCE._replace(text="half of the ball's play", range=POSITIVE),
+        replace(CLEARANCE, text="half of the ball's play", range=POSITIVE),
         PHASE,
     ),
     options=(*OF_STOPS, UNITS),

@@ -5,8 +5,9 @@ import numpy as np
 from vibro_sweep.model import wording
 from vibro_sweep.model.linear import Linear, contact
 from vibro_sweep.model.models.declaration import CONTACT, OF_STOPS, UNITS, WHICH_STOPS, Model, Option
-from vibro_sweep.model.parameters import NOT_NEGATIVE, NUMBER, Parameter, ParameterError
+from vibro_sweep.model.refusals import ParameterError
 from vibro_sweep.model.stacks import vector
+from vibro_sweep.tables.quantity import NOT_NEGATIVE, Parameter
 
 ROUNDING = 1e-12  # of a matrix, relative to its largest entry or eigenvalue
 SMALLEST = 1e-100  # of n of the gap n.x, and one over its largest
@@ -107,8 +108,8 @@ def _depending(given) -> dict[str, str]:
 
 
 def _list(name: str, symbol: str, label: str, text: str, **more) -> Parameter:
-    more = {"units": "1", "range": NUMBER, "each": "mass", "default": 0.0} | more
-    return Parameter(name, symbol, label=label, text=text, free_motion=True, **more)
+    more = {"each": "mass", "default": 0.0} | more
+    return Parameter(name, label, text, symbol, free_motion=True, **more)
 
 
 MODEL = Model(
@@ -131,11 +132,9 @@ MODEL = Model(
         _list("constant", r"\bar f", "constant force", "constant force", units="N"),
         Parameter(
             "force_power",
-            "p",
-            "1",
-            NUMBER,
             "power of omega",
             "the force grows like omega to this power",
+            "p",
             default=0.0,
             free_motion=True,
         ),

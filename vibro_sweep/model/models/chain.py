@@ -4,8 +4,9 @@ import numpy as np
 
 from vibro_sweep.model.linear import Linear, contact
 from vibro_sweep.model.models.declaration import CONTACT, OF_STOPS, UNITS, WHICH_STOPS, Model, Option
-from vibro_sweep.model.parameters import NOT_NEGATIVE, NUMBER, POSITIVE, Parameter, ParameterError
+from vibro_sweep.model.refusals import ParameterError
 from vibro_sweep.model.stacks import vector
+from vibro_sweep.tables.quantity import NOT_NEGATIVE, NUMBER, POSITIVE, Parameter
 
 
 def chain(*, m, k, c, force, constant, stop_at, omega, tau, **stops) -> Linear:
@@ -42,7 +43,7 @@ def _check(given) -> None:
 
 
 def _list(name: str, symbol: str, units: str, range_, each: str, label: str, text: str, default=None) -> Parameter:
-    return Parameter(name, symbol, units, range_, label, text, default=default, free_motion=True, each=each)
+    return Parameter(name, label, text, symbol, units, range_, default=default, free_motion=True, each=each)
 
 
 MODEL = Model(

@@ -1,22 +1,17 @@
 """What a model declares of itself: numbers, options, and how its matrices follow from them."""
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from vibro_sweep.model.contact_laws import LAWS
+from vibro_sweep.model.contact_laws import LAWS, STOP_NUMBERS
 from vibro_sweep.model.linear import Linear
-from vibro_sweep.model.parameter import LENGTHS
-from vibro_sweep.model.parameters import (
-    CLEARANCE,
-    FREQUENCY,
-    OFFSET,
-    PHASE,
-    STOP_NUMBERS,
-    STOPS,
-    Parameter,
-)
+from vibro_sweep.tables.parameters import CLEARANCE, FREQUENCY, OFFSET, PHASE
+from vibro_sweep.tables.quantity import LENGTHS, Parameter
+
+STOPS = ("both", "right", "left")
 
 
 class Option(NamedTuple):
@@ -62,7 +57,8 @@ def names_of(one: Parameter, masses: int) -> list[str]:
 def entries(one: Parameter, masses: int) -> list[Parameter]:
     """The numbers of a list."""
     return [
-        one._replace(
+        replace(
+            one,
             name=name,
             symbol=f"{one.symbol}_{{{i}}}" if "_" not in one.symbol else f"{one.symbol}{{}}_{{{i}}}",
             text=f"{one.text}, {one.each} {i}",

@@ -4,8 +4,8 @@ import numpy as np
 
 from vibro_sweep.model.linear import Linear, contact
 from vibro_sweep.model.models.declaration import CONTACT, OF_STOPS, UNITS, WHICH_STOPS, Model, Option
-from vibro_sweep.model.parameters import NOT_NEGATIVE, NUMBER, Parameter
 from vibro_sweep.model.stacks import matrix, vector
+from vibro_sweep.tables.quantity import NOT_NEGATIVE, Parameter
 
 
 def one_mass(*, k, zeta, F, constant, base, omega, tau, **stops) -> Linear:
@@ -43,23 +43,15 @@ MODEL = Model(
     "(1982) 173; orbits to compare with: arXiv 2510.16218",
     numbers=(
         Parameter(
-            "k", "k", "N m-1", NOT_NEGATIVE, "stiffness", "stiffness of the spring", default=1.0, free_motion=True
+            "k", "stiffness", "stiffness of the spring", "k", "N m-1", NOT_NEGATIVE, default=1.0, free_motion=True
         ),
         Parameter(
-            "zeta", r"\zeta", "N s m-1", NOT_NEGATIVE, "damping ratio", "half the damping coefficient", free_motion=True
+            "zeta", "damping ratio", "half the damping coefficient", r"\zeta", "N s m-1", NOT_NEGATIVE, free_motion=True
         ),
         Parameter(
-            "F",
-            "F",
-            "N",
-            NUMBER,
-            "forcing amplitude",
-            "amplitude of the force, or of the wall's motion",
-            free_motion=True,
+            "F", "forcing amplitude", "amplitude of the force, or of the wall's motion", "F", "N", free_motion=True
         ),
-        Parameter(
-            "constant", r"\bar f", "N", NUMBER, "constant force", "constant force", default=0.0, free_motion=True
-        ),
+        Parameter("constant", "constant force", "constant force", r"\bar f", "N", default=0.0, free_motion=True),
         *CONTACT,
     ),
     options=(

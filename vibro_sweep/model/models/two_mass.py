@@ -1,11 +1,39 @@
 """The paper's oscillator (eqs. 3, 4): the default."""
 
+from dataclasses import replace
+
 import numpy as np
 
+from vibro_sweep.model.contact_laws import OTHER_STOPS
+from vibro_sweep.model.contact_laws.rigid import RESTITUTION, RESTITUTION_LEFT
 from vibro_sweep.model.linear import Linear, contact
 from vibro_sweep.model.models.declaration import OF_STOPS, UNITS, WHICH_STOPS, Model
-from vibro_sweep.model.parameters import PARAMETERS
 from vibro_sweep.model.stacks import matrix, vector
+from vibro_sweep.tables.parameters import CLEARANCE, FREQUENCY, OFFSET, PHASE
+from vibro_sweep.tables.quantity import FRACTION, NOT_NEGATIVE, POSITIVE, Parameter
+
+PAPER = (  # in the order of the kernels' records and derivatives
+    Parameter("mu_m", "mass ratio", "mass ratio M2/M1", r"\mu_m", "1", POSITIVE, "(3)", free_motion=True),
+    Parameter("mu_k", "stiffness ratio", "stiffness ratio K2/K1", r"\mu_k", "1", NOT_NEGATIVE, "(3)", free_motion=True),
+    Parameter("zeta", "damping ratio", "damping ratio C1/(2 sqrt(K1 M1))", r"\zeta", "1", NOT_NEGATIVE, "(3)",
+              free_motion=True),
+    Parameter("f2", "share of force on mass 2", "share of the force on the second mass, P2/(P1 + P2)", "f_2", "1",
+              FRACTION, "(3)", free_motion=True),
+    replace(FREQUENCY, text="forcing frequency Omega sqrt(M1/K1)", equation="(3)"),
+    RESTITUTION,
+    replace(CLEARANCE, text="clearance on each side, B K1/(P1 + P2)"),
+    PHASE,
+)  # fmt: skip
+PARAMETERS = (
+    *PAPER,
+    OFFSET,
+    RESTITUTION_LEFT,
+    Parameter("mu_c", "ratio of dampers", "ratio of the dampers C2/C1; left out: mu_k", r"\mu_c", "1", NOT_NEGATIVE,
+              free_motion=True, optional=True, follows="mu_k"),
+    *OTHER_STOPS,
+)  # fmt: skip
+NAMES = tuple(one.name for one in PAPER)
+FREE_MOTION = tuple(one.name for one in PAPER if one.free_motion)
 
 
 @np.errstate(all="ignore")  # matrices beyond the range of the floats: such an oscillator is too stiff

@@ -1,30 +1,21 @@
 """The state of an oscillator, (x1, v1, ..., xN, vN), and its names in scenes, files and pictures."""
 
 import functools
-from typing import NamedTuple
 
-from vibro_sweep.model.parameters import NUMBER, Parameter
+from vibro_sweep.tables.quantity import Parameter, Quantity
 
 MOST_MASSES = 16
 
 
-class Coordinate(NamedTuple):
-    name: str
-    symbol: str  # TeX
-    label: str
-    text: str
-    units: str
-
-
 @functools.cache
-def coordinates(masses: int) -> tuple[Coordinate, ...]:
+def coordinates(masses: int) -> tuple[Quantity, ...]:
     """The coordinates of so many masses, in order."""
     return tuple(
-        Coordinate(
+        Quantity(
             f"{letter}{mass}",
-            f"{letter}_{mass}" if mass < 10 else f"{letter}_{{{mass}}}",
             f"{word} {letter}{mass}",
             f"{word} of mass {mass}",
+            f"{letter}_{mass}" if mass < 10 else f"{letter}_{{{mass}}}",
             units,
         )
         for mass in range(1, masses + 1)
@@ -45,8 +36,8 @@ def start(masses: int) -> tuple[str, ...]:
 
 
 # A sweep over x1 has the dimension start_x1, since x1 are section points.
-START = {one.name: f"start_{one.name}" for one in coordinates(MOST_MASSES)}
+START = {name: f"start_{name}" for name in state(MOST_MASSES)}
 INITIAL = tuple(
-    Parameter(START[name], f"{symbol}(0)", units, NUMBER, f"initial {text.split()[0]}", f"{text} at t = 0")
-    for name, symbol, _, text, units in coordinates(MOST_MASSES)
+    Parameter(START[one.name], f"initial {one.label.split()[0]}", f"{one.text} at t = 0", f"{one.symbol}(0)", one.units)
+    for one in coordinates(MOST_MASSES)
 )

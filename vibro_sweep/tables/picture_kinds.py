@@ -26,20 +26,6 @@ class Plottable(Protocol):
 
 
 PICTURES = (
-    "basins",
-    "coexistence",
-    "plane",
-    "bifurcation",
-    "lyapunov",
-    "impacts",
-    "contacts",
-    "energy",
-    "phase-portrait",
-    "configuration",
-    "history",
-    "contact-force",
-    "film",
-    "iteration",
-    "poincare",
-    "convergence",
-)
+    "basins", "coexistence", "plane", "bifurcation", "lyapunov", "impacts", "contacts", "energy", "phase-portrait",
+    "configuration", "history", "contact-force", "film", "iteration", "poincare", "convergence",
+)  # fmt: skip

@@ -8,9 +8,7 @@ import math
 import re
 from collections import Counter
 from fractions import Fraction
-from typing import Any, NamedTuple
-
-from vibro_sweep.model.real import array_of
+from typing import NamedTuple
 
 NONE = "1"
 _OF = {"N": {"kg": 1, "m": 1, "s": -2}, "W": {"kg": 1, "m": 2, "s": -3}}
@@ -35,17 +33,6 @@ class Units(NamedTuple):
 
 
 SI = Units(1.0, 1.0, 1.0)
-ALLOWED = "SI, or three positive numbers: what a mass, a length and a time of 1 are in kg, m and s"
-
-
-def units_from(value: Any) -> Units | None:
-    """None for values that are not units: neither the word SI nor three positive numbers."""
-    if isinstance(value, str):
-        return SI if value == "SI" else None
-    found = array_of(value, 1)
-    if found is None or found.shape != (3,) or not all(0 < one < math.inf for one in found.tolist()):
-        return None
-    return Units(*found.tolist())
 
 
 def unit_in(declared: str, units: Units | None) -> str:

@@ -1,0 +1,59 @@
+"""Numbers and units that a caller gives, checked by what is declared of them."""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from vibro_sweep.model.real import array_of, number_of
+from vibro_sweep.model.refusals import ParameterError
+from vibro_sweep.tables.parameters import CLEARANCE
+from vibro_sweep.tables.quantity import NUMBER, POSITIVE, Parameter, Range
+from vibro_sweep.tables.units import SI, Units
+
+UNITS_ALLOWED = "SI, or three positive numbers: what a mass, a length and a time of 1 are in kg, m and s"
+
+
+def units_from(value: Any) -> Units | None:
+    """None for values that are not units: neither the word SI nor three positive numbers."""
+    if isinstance(value, str):
+        return SI if value == "SI" else None
+    found = array_of(value, 1)
+    if found is None or found.shape != (3,) or not all(0 < one < math.inf for one in found.tolist()):
+        return None
+    return Units(*found.tolist())
+
+
+def range_of(parameter: Parameter, stops: str) -> Range:
+    """The range of a number where there are these stops: one alone may stand anywhere."""
+    if parameter.name not in (CLEARANCE.name, "B"):
+        return parameter.range
+    return POSITIVE if stops == "both" else NUMBER
+
+
+def check_value(parameter: Parameter, value: object, stops: str = "both", key: str | None = None) -> None:
+    """Raise `ParameterError` unless `value` (a number or an array of numbers) is allowed for the parameter.
+
+    key : what the error names, by default the parameter
+    """
+    allowed, key = range_of(parameter, stops), key or parameter.name
+    numbers = np.asarray(value)
+    if numbers.dtype.kind not in "fiu":
+        raise ParameterError(key, value, allowed.text)
+    good = allowed.holds(numbers)
+    if not np.all(good):
+        wanted, bad = allowed.text.replace("a number", "a finite number", 1), numbers[~good].flat[0].item()
+        beyond = bad == 0 or (-np.inf < bad < 0 and allowed.holds(np.zeros(())))
+        raise ParameterError(key, bad, f"{wanted}; {parameter.instead}" if parameter.instead and beyond else wanted)
+
+
+def checked_number(parameter: Parameter, value: object, stops: str = "both", key: str | None = None) -> float:
+    """A number as a float. Raises `ParameterError`, with the value as it was given, unless it is allowed."""
+    number, key = number_of(value), key or parameter.name
+    if number is None:
+        raise ParameterError(key, value, range_of(parameter, stops).text)
+    try:
+        check_value(parameter, number, stops, key)
+    except ParameterError as error:
+        raise ParameterError(key, value, error.allowed) from None
+    return number
