@@ -67,6 +67,7 @@ if TYPE_CHECKING:
     from vibro_sweep.driver.loaded_results import load
     from vibro_sweep.driver.run import run
     from vibro_sweep.driver.windows import windows
+    from vibro_sweep.files.file_errors import StoreError
     from vibro_sweep.live.served_page import explore
     from vibro_sweep.model.errors import VibroSweepError
     from vibro_sweep.model.general import Oscillator
@@ -76,7 +77,6 @@ if TYPE_CHECKING:
     from vibro_sweep.plotting import PlotError
     from vibro_sweep.plotting.front import plot
     from vibro_sweep.scene import SceneError, load_scene
-    from vibro_sweep.store.opening import StoreError
 else:
     _HOME = {
         "Oscillator": "model.general",
@@ -84,7 +84,7 @@ else:
         "PlotError": "plotting",
         "RunError": "driver.compute",
         "SceneError": "scene",
-        "StoreError": "store",
+        "StoreError": "files.file_errors",
         "System": "model.oscillator",
         "VibroSweepError": "model.errors",
         "bifurcation_curve": "analysis.curves.bifurcation_curve",

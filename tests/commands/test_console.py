@@ -60,7 +60,7 @@ def test_ctrl_c_twice(folder):
     (folder / "long.yaml").write_text(SCENE + "orbit: {transient: 1.0e+9, record: 1}\n")
     process = subprocess.Popen([*PROGRAM, "run", "long.yaml"], stderr=subprocess.PIPE, text=True)
     limit = time.monotonic() + LIMIT
-    while not (folder / "long.h5.part").exists():
+    while not (folder / "long.h5").exists():
         assert process.poll() is None and time.monotonic() < limit
         time.sleep(0.02)
     time.sleep(1.0)
@@ -233,7 +233,7 @@ def test_a_long_run_is_announced(folder):
 def test_a_quiet_run_is_not_announced(folder):
     process = begun(folder, "--quiet")
     limit = time.monotonic() + LIMIT
-    while not (folder / "long.h5.part").exists():
+    while not (folder / "long.h5").exists():
         assert process.poll() is None and time.monotonic() < limit
         time.sleep(0.02)
     time.sleep(3.0)

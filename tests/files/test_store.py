@@ -68,10 +68,13 @@ def test_xarray_opens_it(made):
     kind, path = made
     content, lead, names = KINDS[kind]
     with xarray.open_dataset(path, engine="h5netcdf") as data, vs.open(path) as own:
-        for attributes in (own.attrs, data.attrs):
-            if lead.keys() <= {"start"}:  # h5netcdf has its own word for a list of nothing
-                attributes["sweep_dimensions"] = []
-        assert own.identical(data)
+        assert set(own.attrs) == set(data.attrs)
+        for name, value in data.attrs.items():  # what is known at the end, `open` adds
+            plain = name not in ("history", "provenance", "sweep_dimensions")
+            assert not plain or np.array_equal(own.attrs[name], value), name
+        if kind == "follow both":  # texts of fixed length
+            data["start"] = data["start"].astype(str)
+        assert own.drop_attrs().equals(data.drop_attrs())
         assert set(data.data_vars) == names | {"status"}
         for name, array in data.data_vars.items():
             assert array.sizes == lead | EXTRA.get(name, {}), name
@@ -94,6 +97,8 @@ def test_xarray_opens_it(made):
 def test_everything_is_described(made):
     with h5py.File(made[1]) as file:
         for name, dataset in file.items():
+            if name == "check":  # a group, for this program alone
+                continue
             assert dataset.attrs["units"] and dataset.attrs["long_name"], name
             for dimension in () if dataset.is_scale else dataset.dims:
                 assert len(dimension) == 1 and dimension[0].is_scale, name
@@ -107,12 +112,12 @@ def test_everything_is_described(made):
 def test_root_attributes(path):
     scene = scene_of(SWEEP + "start: {random: 2, seed: 7}  # a comment stays\n")
     vs.run(scene, path, workers=2)
-    with h5py.File(path) as file:
-        assert file.attrs["Conventions"] == b"CF-1.11" and file.attrs["format"] == 2
-        title, text, history = (file.attrs[name].decode() for name in ("title", "scene", "history"))
+    with vs.open(path) as data:
+        assert data.attrs["Conventions"] == "CF-1.11" and data.attrs["format"] == 3
+        title, text, history = (data.attrs[name] for name in ("title", "scene", "history"))
         assert "the_scene" in title and text == scene.text and "# a comment stays" in text
         assert [line.split()[1] for line in history.splitlines()] == ["begun", "complete"]
-        provenance = json.loads(file.attrs["provenance"])
+        provenance = json.loads(data.attrs["provenance"])
     assert {"vibro_sweep", "python", "numpy", "numba", "h5py", "cpu", "code"} <= provenance.keys()
     assert (provenance["threads"], provenance["seed"]) == (2, 7) and provenance["wall_time_s"] >= 0
 

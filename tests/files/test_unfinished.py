@@ -13,10 +13,10 @@ from support.stored import ALL, IMPACTS, LYAPUNOV, PLANE, SECTION, SWEEP, broken
 import vibro_sweep as vs
 
 
-@pytest.mark.parametrize("part", sample(1, [False, True]))
-def test_what_is_opened_can_be_copied_and_sent(path, part):
+@pytest.mark.parametrize("unfinished", sample(1, [False, True]))
+def test_what_is_opened_can_be_copied_and_sent(path, unfinished):
     scene = scene_of(PLANE + ALL)
-    path = broken_off(scene, path) if part else vs.run(scene, path) and path
+    path = broken_off(scene, path) if unfinished else vs.run(scene, path) and path
     with vs.open(path) as data:
         sent = pickle.loads(pickle.dumps(data))
         assert sent.identical(data) and data.copy(deep=True).identical(data)
@@ -26,12 +26,12 @@ def test_what_is_opened_can_be_copied_and_sent(path, part):
 
 def test_a_file_that_is_being_written_can_be_read(path):
     """By another process."""
-    part, printed = f"{path}.part", []
+    printed = []
 
     def read(done, _):
         if done == 0:
-            printed.append(in_another_process("-m", "vibro_sweep", "info", part))
-            printed.append(in_another_process("-c", f"import vibro_sweep as v; print(dict(v.open('{part}').sizes))"))
+            printed.append(in_another_process("-m", "vibro_sweep", "info", str(path)))
+            printed.append(in_another_process("-c", f"import vibro_sweep as v; print(dict(v.open('{path}').sizes))"))
 
     vs.run(scene_of(SWEEP), path, progress=read)
     assert "computed     0 of 3" in printed[0] and "{'b': 3, 'sample': 4}" in printed[1]
@@ -55,8 +55,8 @@ def test_what_is_missing_and_what_is_done(path, starts):
 
 def test_describe_says_how_far_it_is(path):
     scene = scene_of(SWEEP + ALL)
-    part = broken_off(scene, path)
-    assert "computed     1 of 3 orbits (33.33 %)" in described(part)
+    broken_off(scene, path)
+    assert "computed     1 of 3 orbits (33.33 %)" in described(path)
     vs.run(scene, path, mode="resume")
     text = described(path)
     assert "computed     3 of 3 orbits (100 %)" in text and "complete" in text and "|sum of exponents" in text

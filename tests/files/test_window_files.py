@@ -1,9 +1,5 @@
 """The file of a sweep's windows: what is in it, that it does not depend on how it was made, and the commands."""
 
-import shutil
-import subprocess
-import sys
-
 import numpy as np
 import pytest
 import xarray as xr
@@ -58,31 +54,12 @@ def test_a_run_that_is_interrupted_goes_on(few, file, tmp_path):  # noqa: F811
     with pytest.raises(KeyboardInterrupt):
         vs.windows(few, output=tmp_path / "w.h5", progress=stop)
     assert not (tmp_path / "w.h5").exists()
-    with pytest.raises(vs.StoreError, match="is a run of windows that is not complete"):
-        vs.open(tmp_path / "w.h5.part")
     with pytest.raises(vs.StoreError, match="interrupted run; `resume` continues it"):
         vs.windows(few, output=tmp_path / "w.h5")
     vs.windows(few, output=tmp_path / "w.h5", mode="resume")
     first, second = numbers(file), numbers(tmp_path / "w.h5")
     assert first == second
-    assert not (tmp_path / "w.h5.part").exists()
-
-
-@pytest.mark.slow
-def test_interrupted_when_the_file_has_its_name(few, file, tmp_path):  # noqa: F811
-    """And its part is still there: nothing is followed again."""
-    part = tmp_path / "w.h5.part"
-
-    def copy(done, total):
-        if done == total:
-            shutil.copy(part, tmp_path / "copy")
-
-    vs.windows(few, output=tmp_path / "w.h5", progress=copy)
-    made = (tmp_path / "w.h5").read_bytes()
-    (tmp_path / "copy").rename(part)
-    assert ended("windows", few, "-o", tmp_path / "w.h5", "--resume", "--quiet").status == 0
-    assert [path.name for path in tmp_path.iterdir()] == ["w.h5"] and (tmp_path / "w.h5").read_bytes() == made
-    assert numbers(tmp_path / "w.h5") == numbers(file)
+    assert [path.name for path in tmp_path.iterdir()] == ["w.h5"]
 
 
 @pytest.mark.slow
@@ -98,19 +75,6 @@ def test_dask_makes_the_same_file(few, file, tmp_path):  # noqa: F811
         words = ["-o", tmp_path / "w.h5", "--quiet", "--scheduler", cluster.scheduler_address]
         assert ended("windows", few, *words).status == 0
     assert numbers(tmp_path / "w.h5") == numbers(file)
-
-
-@pytest.mark.slow
-def test_windows_are_found_without_xarray(few, tmp_path):  # noqa: F811
-    """Its import takes as long as all other parts of the program together."""
-    code = (
-        "import atexit, sys; from vibro_sweep.__main__ import program;"
-        "atexit.register(lambda: print('imported', sorted({'xarray', 'pandas', 'dask'} & set(sys.modules))));"
-        "program()"
-    )
-    command = [sys.executable, "-c", code, "windows", few, "-o", tmp_path / "w.h5", "--quiet"]
-    done = subprocess.run(command, capture_output=True, text=True, check=True)
-    assert done.stdout.splitlines()[-1] == "imported []"
 
 
 @pytest.mark.slow

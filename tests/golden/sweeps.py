@@ -8,6 +8,7 @@ their variable, and, where section points or averages do so, the counts of that 
 import numpy as np
 
 from golden import units
+from golden.files import comparable
 from golden.scenes import computed
 from golden.special_points import changed
 
@@ -74,7 +75,7 @@ def compared(result: dict, data) -> list[str]:
     """In words what differs between the `result` of a record and a Dataset."""
     now, numbers = form_of(data), numbers_of(data)
     lines = [f"{name}: {line}" for name in ("variables", "attrs") for line in _other(result[name], now[name])]
-    lines += changed({"numbers": [*result["numbers"]]}, {"numbers": [*numbers]}, ("numbers",))
+    lines += changed({"numbers": sorted(result["numbers"])}, {"numbers": sorted(numbers)}, ("numbers",))
     if lines:
         return lines
     for name, kept in result["numbers"].items():
@@ -93,7 +94,10 @@ def differences_from(record: dict) -> list[str]:
 
 
 def _other(stored: dict, now: dict) -> list[str]:
-    return changed(stored | {"names": [*stored]}, now | {"names": [*now]}, ("names", *(stored.keys() & now.keys())))
+    stored, now = comparable(stored), comparable(now)
+    return changed(
+        stored | {"names": sorted(stored)}, now | {"names": sorted(now)}, ("names", *(stored.keys() & now.keys()))
+    )
 
 
 def _is_real(values: np.ndarray) -> bool:

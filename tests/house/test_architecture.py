@@ -10,13 +10,14 @@ ALLOWED = {
     "tables": set(),
     "model": {"tables"},
     "engine": {"tables", "model"},
-    "analysis": {"tables", "model", "engine", "plotting", "driver"},
+    "analysis": {"tables", "model", "engine", "results", "plotting", "driver"},
     "scene": {"tables", "model", "driver"},
-    "store": {"tables", "model", "scene"},
-    "driver": {"tables", "model", "engine", "analysis", "scene", "store"},
-    "plotting": {"tables", "model", "store"},
-    "live": {"tables", "model", "engine", "analysis", "scene", "store", "driver", "plotting"},
-    "cli": {"tables", "model", "engine", "scene", "store", "driver", "plotting", "live"},
+    "results": {"tables", "model", "scene"},
+    "files": {"tables", "model", "scene", "results"},
+    "driver": {"tables", "model", "engine", "analysis", "scene", "files", "results"},
+    "plotting": {"tables", "model", "files", "results"},
+    "live": {"tables", "model", "engine", "analysis", "scene", "files", "results", "driver", "plotting"},
+    "cli": {"tables", "model", "engine", "scene", "files", "results", "driver", "plotting", "live"},
     "types": {"tables", "model", "analysis", "scene", "driver", "live"},
 }
 # of analysis/: in this order
@@ -77,7 +78,7 @@ def test_what_a_method_asks_of_another_room_is_imported_when_it_is_called(room, 
 
 
 def test_pictures_recompute_no_physics():
-    """plotting/ has names and checks of the model alone, and of the store what reads: no scene is parsed there."""
+    """plotting/ has names and checks of the model alone, and of files what reads: no scene is parsed there."""
     for path in (HOME / "plotting").rglob("*.py"):
         for other, node in imported(path):
             if other == "model":

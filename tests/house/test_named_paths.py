@@ -6,7 +6,7 @@ import pytest
 from support import ROOT
 
 PAGES = [*sorted((ROOT / "docs").rglob("*.md")), *(ROOT / name for name in ("README.md", "CONTRIBUTING.md"))]
-ROOMS = "tables|model|engine|analysis|scene|store|driver|plotting|live|cli"
+ROOMS = "tables|model|engine|analysis|scene|results|files|driver|plotting|live|cli"
 PATH = re.compile(rf"`((?:tests|tools|benchmarks|docs|configs|vibro_sweep|{ROOMS})/[\w./*-]*)`")
 
 

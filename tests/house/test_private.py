@@ -55,5 +55,5 @@ def test_an_import_from_inside_is_seen():
     text = (
         "import vibro_sweep as vs\nfrom vibro_sweep.types import Branch\nfrom vibro_sweep.engine.records import new\n"
     )
-    text += "def function():\n    import vibro_sweep.store.opening\n"
-    assert imported(text) - PUBLIC == {"vibro_sweep.engine.records", "vibro_sweep.store.opening"}
+    text += "def function():\n    import vibro_sweep.files.opening\n"
+    assert imported(text) - PUBLIC == {"vibro_sweep.engine.records", "vibro_sweep.files.opening"}

@@ -8,13 +8,13 @@ from support.searching import new_report, searched
 from support.windows import SYSTEM, few  # noqa: F401
 
 import vibro_sweep as vs
-from vibro_sweep import store
 from vibro_sweep.analysis.periodic.periodic_orbit import orbit_of
 from vibro_sweep.analysis.windows import members
 from vibro_sweep.analysis.windows.job import Job, window_of
 from vibro_sweep.analysis.windows.rows import REASON_CODES
 from vibro_sweep.analysis.windows.window_search import WindowSearch
 from vibro_sweep.driver.windows import rows_in
+from vibro_sweep.files.reading import sweep_in
 from vibro_sweep.tables.outcomes import REASONS
 
 # an impact damper, of which an asymmetric orbit is born at the upper end of a window, where a symmetric one loses its
@@ -49,7 +49,7 @@ def test_a_window_from_its_ends(few):  # noqa: F811
     windows = vs.windows(few)
     chosen = [window for window in windows if {window.lower.type, window.upper.type} & {"fold", "pitchfork"}]
     assert {end.type for window in chosen for end in (window.lower, window.upper)} == {"graze", "fold", "pitchfork"}
-    with store.contents(few) as data:
+    with sweep_in(few, computes=True) as data:
         (row,) = rows_in(data, "b")
     report, found = new_report(), []
     for window in chosen[:1] + chosen[-2:]:
@@ -93,7 +93,7 @@ def test_a_window_ends_at_the_first_of_three_tori(b):
 
 def test_an_orbit_without_a_window_of_its_own_is_in_the_one_that_covers_it(few):  # noqa: F811
     """The job of the first point of period 13 says `not_settled`; the window comes from its neighbours."""
-    with store.contents(few) as data:
+    with sweep_in(few, computes=True) as data:
         search = WindowSearch(rows_in(data, "b"))
     refused = []
 

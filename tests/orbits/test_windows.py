@@ -7,9 +7,9 @@ from support.oscillators import PAPER
 from support.windows import SYSTEM, check_end, few  # noqa: F401
 
 import vibro_sweep as vs
-from vibro_sweep import store
 from vibro_sweep.analysis.windows.job import Job, window_of
 from vibro_sweep.driver.windows import rows_in
+from vibro_sweep.files.reading import sweep_in
 from vibro_sweep.model.window_families import families
 from vibro_sweep.tables.outcomes import REASONS
 
@@ -126,7 +126,7 @@ def test_a_clearance_between_two_stops_stays_above_zero(stops, bounds, tmp_path)
     """Orbits that rest on both stops are stable down to b = 0: they were followed beyond, to a traceback."""
     system = SYSTEM.replace(stops=stops)
     vs.sweep(system, {"b": [0.1, 0.3]}, transient=5, record=5, output=tmp_path / "b.h5", workers=1).close()
-    with store.contents(tmp_path / "b.h5") as data:
+    with sweep_in(tmp_path / "b.h5", computes=True) as data:
         (row,) = rows_in(data, None)
     assert row.bounds == pytest.approx(bounds, rel=1e-12)
 

@@ -80,7 +80,7 @@ def test_what_is_no_picture_of_ours_is_left_alone(folder, capsys, what):
     OBSTACLES[what](folder / "x.png")
     before = seen(folder)
     refused(capsys, ["plot", "x.h5"], "x.png")
-    refused(capsys, ["plot", "y.h5.part", "-o", "x.png"], "x.png")
+    refused(capsys, ["plot", "y.h5", "-o", "x.png"], "x.png")
     assert seen(folder) == before
     if what not in ("text", "hdf5"):
         refused(capsys, ["plot", "x.h5", "--overwrite"], "x.png")
@@ -91,7 +91,7 @@ def test_what_is_no_picture_of_ours_is_left_alone(folder, capsys, what):
 
 def test_a_link_to_the_data_is_left_alone(folder, capsys):
     Path("x.png").symlink_to("x.h5")
-    Path("z.png").symlink_to("y.h5.part")
+    Path("z.png").symlink_to("y.h5")
     before = seen(folder)
     for arguments in (
         ["plot", "x.h5"],
@@ -158,7 +158,7 @@ def test_names_of_pictures(folder, tmp_path):
     diagram."""
     (tmp_path / "here").mkdir()
     os.chdir(tmp_path / "here")
-    assert main(["plot", "../x.h5"]) == main(["plot", "../y.h5.part"]) == 0
+    assert main(["plot", "../x.h5"]) == main(["plot", "../y.h5"]) == 0
     diagram = Path("x.png").read_bytes()
     assert main(["plot", "../x.h5", "--at", "b=6.6", "--kind", "poincare"]) == 0
     assert main(["plot", "../x.h5", "-o", "all.svg", "--kind", "all"]) == 0

@@ -70,30 +70,29 @@ def test_every_number_of_every_point_is_in_the_file(tmp_path, kind, tau):
 def test_words_of_maps_and_impact_sections(tmp_path):
     text = "dynamics: map\norder: 2\nexpand_at: 6.7107356\norbit: {transient: 3, record: 4}"
     _, path = run(tmp_path, text, orbit="")
-    with h5py.File(path) as file:
-        assert (file.attrs["dynamics"], file.attrs["order"], file.attrs["expand_at"]) == ("map", 2, 6.7107356)
-        assert file.attrs["section"] == "phase" and "section_stop" not in file.attrs
+    with vs.open(path) as data:
+        assert (data.attrs["dynamics"], data.attrs["order"], data.attrs["expand_at"]) == ("map", 2, 6.7107356)
+        assert data.attrs["section"] == "phase" and "section_stop" not in data.attrs
     path.unlink()
     _, path = run(tmp_path, "section: {kind: impact, stop: left}\norbit: {transient: 3, record: 4}", orbit="")
-    with h5py.File(path) as file:
-        assert (file.attrs["section"], file.attrs["section_stop"], file.attrs["dynamics"]) == ("impact", "left", "flow")
-        assert "order" not in file.attrs
-
-
-def test_a_damaged_number_is_mended(tmp_path):
-    """As coordinates of the sweep are: from the scene."""
-    scene, path = run(tmp_path, SWEEPS["omega, mu_m"], f"{PAPER}")
-    with h5py.File(path) as file:
-        whole = file["b_star"][()]
-        (info,) = [file["b_star"].id.get_chunk_info(0)]
-    with path.open("r+b") as file:
-        file.seek(info.byte_offset + 5)
-        file.write(b"\xff\x00\xff")
-    with pytest.raises(vs.StoreError, match="b_star"):
-        vs.open(path)
-    vs.run(scene, path, mode="resume")
     with vs.open(path) as data:
-        assert np.array_equal(data.b_star, whole) and np.all(data.status == 0)
+        assert (data.attrs["section"], data.attrs["section_stop"], data.attrs["dynamics"]) == ("impact", "left", "flow")
+        assert "order" not in data.attrs
+
+
+def test_numbers_that_follow_are_there_from_the_beginning(tmp_path):
+    """Before anything is computed."""
+    scene, path = run(tmp_path, SWEEPS["omega, mu_m"], f"{PAPER}")
+    with vs.open(path) as data:
+        whole = data["b_star"].load()
+
+    def stop(*_):
+        raise ZeroDivisionError
+
+    with pytest.raises(ZeroDivisionError):
+        vs.run(scene, tmp_path / "y.h5", progress=stop)
+    with vs.open(tmp_path / "y.h5") as data:
+        assert data["b_star"].equals(whole) and np.all(data.status == -1)
 
 
 # What YAML 1.1 reads otherwise: 2e2 is a text there, 010 is eight and 0100 is 64

@@ -10,7 +10,7 @@ from support.programs import ended
 
 def arrays_of(path) -> dict:
     with h5py.File(path) as file:
-        return {name: dataset[()] for name, dataset in file.items()}
+        return {name: dataset[()] for name, dataset in file.items() if isinstance(dataset, h5py.Dataset)}
 
 
 def numbers(path) -> dict[str, bytes]:

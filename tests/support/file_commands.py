@@ -14,7 +14,7 @@ from support.kinds_of_files import KINDS, PERIODIC, RAGGED, SYSTEM, write_scenes
 from support.programs import ended
 
 READ, REFUSED, DAMAGED = "read", "refused", "told damaged"
-HALF = "half of a sweep"  # the part of a run that was interrupted, sweep.h5.part
+HALF = "half of a sweep"  # the file of a run that was interrupted, sweep.h5
 Result = str | dict[str, np.ndarray]  # what is printed or drawn; the numbers that are read
 QUIET = ("--workers", "1", "--quiet")
 # What is computed from files: the kind of the file, and the words of the command.
@@ -53,7 +53,7 @@ def commands(name: str) -> dict[str, Callable[[str], Said]]:
         return calls | {"vs.load": loaded_orbit, "open": opened}
     calls["open"] = opened
     if name == HALF:
-        return calls | {"run --resume": lambda file: resumed("sweep", file.removesuffix(".part"))}
+        return calls | {"run --resume": lambda file: resumed("sweep", file)}
     if name in RAGGED:
         calls["vs.load"] = loaded
     calls |= {"vs.plot": plotted, "vs.plot of the dataset": plotted_dataset}
@@ -97,6 +97,8 @@ def said(words: list[str]) -> Said:
     if end.status == 2:
         assert end.err.startswith("vibro-sweep: error: "), end.err
         return Said(REFUSED, end.err)
+    if words[0] == "info" and ("checksums    none" in end.out or "unfinished" in end.out):
+        return Said(DAMAGED, end.out)
     warnings = [line for line in end.err.splitlines(True) if not line.startswith("vibro_sweep: compil")]
     return Said(READ, "", re.sub(r"\d{4}-\d\d-\d\dT\S*", "", "".join([end.out, *warnings])))
 

@@ -1,4 +1,4 @@
-"""Good files and parts to be damaged, what may stand in a file's place, and whether a command left all alone."""
+"""A good file, an unfinished one, what may stand in their place, and whether a command left all alone."""
 
 import os
 import shutil
@@ -28,7 +28,7 @@ def files(tmp_path_factory):
 
 
 def write_files(folder: Path) -> Path:
-    """A complete file, whole.h5, and half.h5.part, a part with three of four blocks."""
+    """A complete file, whole.h5, and half.h5, with three of four blocks."""
     vs.run(SCENE, folder / "whole.h5")
 
     def stop(done, _):
@@ -45,7 +45,7 @@ def folder(files, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "scene.yaml").write_text(TEXT)
     shutil.copy(files / "whole.h5", "x.h5")
-    shutil.copy(files / "half.h5.part", "y.h5.part")
+    shutil.copy(files / "half.h5", "y.h5")
     return tmp_path
 
 

@@ -37,7 +37,7 @@ sweep: {b: {values: [6.5, 6.6, 6.7]}}
     "binary.yaml": b"system: \xff\xfe",
     "data.h5": b"\x89HDF\r\n\x1a\n",
     "old.h5": b"years of work",
-    "half.h5.part": b"hours of work",
+    "half.h5.pieces": b"hours of work",
 }
 LONG = {"x5000": "x" * 5000, "x252": "x" * 252, "nines": "9" * 5000}
 NAMES = {"vs": vs, "np": np, "xr": xr, "math": math, "json": json, "Path": Path, "Figure": Figure}

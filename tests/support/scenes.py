@@ -103,9 +103,9 @@ def run(folder, text, system=PAPER, **options):
 
 
 def done(output):
-    """Orbits in the part of a run."""
+    """Orbits in the file of a run."""
     try:
-        with vs.open(f"{output}.part") as data:
+        with vs.open(output) as data:
             return np.count_nonzero(data["status"].values != -1)
     except vs.StoreError:  # it is being made
         return 0

@@ -24,12 +24,12 @@ class Interruption(Exception):  # noqa: N818
 
 
 def broken_off(scene, path, mode="new"):
-    """The unfinished file of a run that ends after its first block."""
+    """The file of a run that ends after its first block."""
 
     def progress(done, _):
         if done:
             raise Interruption
 
     with pytest.raises(Interruption):
-        vs.run(scene, path, workers=1, progress=progress, mode=mode)
-    return f"{path}.part"
+        vs.run(scene, path, workers=1, progress=progress, mode=mode, block=1)
+    return path

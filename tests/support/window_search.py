@@ -14,11 +14,11 @@ from support.compliant_branches import MODELS as COMPLIANT
 from support.drawn_branches import MODELS, drawn_number, drawn_oscillator
 from support.searching import Report, new_report
 from support.windows import check_end
-from vibro_sweep import store
 from vibro_sweep.analysis.periodic.periodic_orbit import orbit_of
 from vibro_sweep.analysis.windows.job import Job, lies_on, window_of
 from vibro_sweep.analysis.windows.members import solution_in
 from vibro_sweep.driver.windows import rows_in
+from vibro_sweep.files.reading import sweep_in
 from vibro_sweep.tables.outcomes import REASONS
 
 NEAR_ENDS = (1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12)  # shares of a window from its ends
@@ -34,7 +34,7 @@ def swept(system, name, values, seed, folder):
     path = Path(folder) / f"{len(values)}-{seed}.h5"
     start = {"random": 2, "seed": seed}
     data = vs.sweep(system, {name: values}, start=start, transient=600, record=100, output=path, workers=1)
-    with store.contents(path) as contents:
+    with sweep_in(path, computes=True) as contents:
         (row,) = rows_in(contents, name)
     return data, vs.windows(path), row.bounds
 

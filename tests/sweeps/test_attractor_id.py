@@ -53,7 +53,7 @@ def test_an_interrupted_run_has_no_numbers_and_then_the_same(tmp_path, window):
 
     with pytest.raises(KeyboardInterrupt):
         vs.run(scene_of(WINDOW), path, workers=1, progress=stop, block=4)
-    with vs.open(f"{path}.part") as part:
+    with vs.open(path) as part:
         assert np.all(part.attractor_id == -1) and np.any(part.attractor > 0)
     vs.run(scene_of(WINDOW), path, mode="resume")
     with vs.open(path) as data:

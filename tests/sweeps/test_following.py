@@ -5,45 +5,9 @@ import math
 import numpy as np
 import pytest
 from support import slow_cases
-from support.attractors import known_orbits, same_partition
 
-from vibro_sweep.analysis.attractors import following, grouping
+from vibro_sweep.analysis.attractors import following
 from vibro_sweep.analysis.attractors.following import Attractors, Follower
-from vibro_sweep.analysis.attractors.many import Orbits, group_pieces
-
-# Grouping more orbits than memory holds
-
-
-@pytest.mark.parametrize("room", [1, 40, 170, 1000])
-@pytest.mark.parametrize("seed", range(3))
-def test_pieces_have_the_groups_of_the_whole(seed, room):
-    _, period, average, error = known_orbits(400, seed)
-    average[::37] = np.nan  # not settled
-    average[5::41, 6], period[5::41] = -1e-4, 0  # perhaps on their way
-    cuts = np.unique(np.random.default_rng(seed).integers(1, 400, 7)).tolist()
-    ends, starts = [*cuts, 400], [0, *cuts]
-    orbits = Orbits(period, average, error)
-    asked = []
-
-    def read(n):
-        asked.append(n)
-        return Orbits(*(values[starts[n] : ends[n]] for values in orbits))
-
-    label, whole = group_pieces(ends, read, room), grouping.group(*orbits)
-    assert np.array_equal(label == 0, whole == 0) and same_partition(label, whole) and whole.max() >= 6
-    assert len(asked) > len(ends)
-
-
-def test_chaos_that_fills_its_range_from_piece_to_piece_is_one():
-    """Linked by orbits of other pieces alone, in an order that needs several passes."""
-    average, error = np.zeros((60, 7)), np.full((60, 7), 0.01)
-    average[:, 1] = np.concatenate([np.linspace(0, 1, 31)[::-1], np.linspace(-1, 0, 30)[1:]])
-    average[:, 6], error[:, 6] = 0.01, 0.001
-    period = np.zeros(60, int)
-    ends = list(range(5, 61, 5))
-    label = group_pieces(ends, lambda n: Orbits(*(v[5 * n : 5 * n + 5] for v in (period, average, error))), room=3)
-    assert np.all(label == 1)
-
 
 # Following
 

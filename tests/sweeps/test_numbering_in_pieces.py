@@ -13,10 +13,7 @@ from vibro_sweep.driver.attractor_ids import number_attractors
 
 
 def numbers_again(scene, data, room):
-    again = {name: data[name] for name in ("attractor", "period", "average", "average_error")}
-    again["attractor_id"] = np.full(data["attractor"].shape, -1)
-    number_attractors(scene, again, room)
-    return again["attractor_id"]
+    return number_attractors(scene, data.__getitem__, room)["attractor_id"]
 
 
 @pytest.mark.parametrize(
@@ -68,10 +65,10 @@ def test_many_points_need_little_memory():
             return values
 
     file = {name: Made(name) for name in ("attractor", "period", "average", "average_error")}
-    file["attractor_id"] = np.full(count, -1, np.int32)
+    file |= {"attractor_id": np.full(count, -1, np.int32), "share": None}
     tracemalloc.start()
-    number_attractors(scene, file, room=5_000)
+    numbers = number_attractors(scene, file.__getitem__, room=5_000)["attractor_id"]
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     assert peak < count * 16 * 8 / 2
-    assert file["attractor_id"].max() == 21 and in_order(file["attractor_id"])
+    assert numbers.max() == 21 and in_order(numbers)

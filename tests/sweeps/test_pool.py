@@ -193,7 +193,7 @@ def test_ctrl_c_does_not_wait_for_a_block(tmp_path):
     command = [sys.executable, "-m", "vibro_sweep", "run", "long.yaml"]
     process = subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True)
     limit = time.monotonic() + LIMIT
-    while not (tmp_path / "long.h5.part").exists():
+    while not (tmp_path / "long.h5").exists():
         assert process.poll() is None and time.monotonic() < limit
         time.sleep(0.02)
     time.sleep(1.5)  # until it is in the block

@@ -198,7 +198,7 @@ def info(file: DataFile):
 
     Also how accurate it says it is.
     """
-    from vibro_sweep.store import StoreError
+    from vibro_sweep.files.file_errors import StoreError
 
     from .info import examine
 
@@ -310,8 +310,8 @@ def explore_command(
 
 
 def _draw(file: Path, output: Path | None, kind: str | None, overwrite: bool, quiet: bool, *options, **beside):
+    from vibro_sweep.files.file_errors import StoreError
     from vibro_sweep.plotting import PlotError, PlotOptions, plot
-    from vibro_sweep.store import StoreError
 
     all_is_imported()
     with input_errors(PlotError, StoreError), interrupt.tidied_up(), messages(quiet):

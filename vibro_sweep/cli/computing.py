@@ -54,7 +54,7 @@ class Computation:
 
     def check_outputs(self, inputs: Collection[Path]) -> None:
         """Raises InputError where something is in the way. inputs : files that are read, and must not be written."""
-        from vibro_sweep.store import StoreError
+        from vibro_sweep.files.file_errors import StoreError
 
         from .outputs import check_output
 
@@ -66,7 +66,7 @@ class Computation:
         """Executor and progress, while the file is computed; what fails then has a message of its own."""
         from vibro_sweep.driver.compute import RunError
         from vibro_sweep.driver.progress import progress_bar
-        from vibro_sweep.store import StoreError
+        from vibro_sweep.files.file_errors import StoreError
 
         all_is_imported()
         workers_of_a_cluster = executor_of(self.scheduler)

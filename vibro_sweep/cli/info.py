@@ -6,20 +6,19 @@ from collections import Counter
 from pathlib import Path
 from typing import NamedTuple
 
-import h5py
 import numpy as np
+import xarray
 
 from vibro_sweep.cli.ragged_tables import curves_table, special_table, windows_table
-from vibro_sweep.store import checks
-from vibro_sweep.store.attributes import is_flat, quantities_of, text, texts
-from vibro_sweep.store.opening import REMEDY, ForeignError, StoreError, opened
+from vibro_sweep.files.file_errors import StoreError
+from vibro_sweep.files.opening import REMEDY, damage, open_file
+from vibro_sweep.files.reading import open_whole
+from vibro_sweep.results import ragged_dataset
+from vibro_sweep.results.sweep_dataset import Sweep
 from vibro_sweep.tables.exponents import CERTAIN, periods_to_go, sign_of
-from vibro_sweep.tables.file_columns import CHART, WINDOWS
+from vibro_sweep.tables.file_columns import CHART, SWEEP, WINDOWS
 from vibro_sweep.tables.observables import GAP
 from vibro_sweep.tables.outcomes import NOT_COMPUTED, NOT_SETTLED, REASONS, VALID, named, status_of
-
-# datasets of a sweep that are read
-ACCURACY = ("status", "lyapunov", "lyapunov_error", "lyapunov_residual", "contact_error", "min_impact_speed")
 
 
 class Description(NamedTuple):
@@ -31,56 +30,50 @@ class Description(NamedTuple):
 
 def tables(path: str | Path) -> list[str]:
     """The tables of a file of branches or windows, line by line. Raises StoreError."""
-    with opened(Path(path)) as (file, _):
-        return _tables(file)
+    with open_whole(Path(path)) as data:
+        return _tables(data)
 
 
 def examine(path: str | Path) -> Description:
     """A description: what is in a file, how it was made, how far it is, and its stated accuracy. Raises StoreError."""
     path = Path(path)
-    try:
-        with opened(path, ACCURACY, content=False) as (file, lost):
-            return _examined(file, path, lost)
-    except ForeignError as found:
-        return Description(_of_another_program(found), False)
-    except StoreError:
-        raise
-    except (OSError, RuntimeError, ValueError, KeyError, TypeError) as error:
-        raise StoreError(f"{path} is damaged ({error})") from None
+    with open_file(path) as data:
+        try:
+            return _examined(data, path)
+        except (OSError, RuntimeError, ValueError, KeyError, TypeError) as error:
+            raise StoreError(f"{path} is damaged ({error})") from None
 
 
-def _examined(file: h5py.File, path: Path, lost: int) -> Description:
-    lines = [f"{path}: {text(file, 'title')}"]
-    found = checks.damage(file, lost)
-    made_by = ["made by", *_record(text(file, "provenance"), text(file, "history"))]
-    if is_flat(file):
-        lines += [f"damaged      {found}; {REMEDY}"] if found else [*_tables(file), "checksums    all hold"]
-        return Description("\n".join([*lines, *made_by]), bool(found))
-    for name in texts(file, "sweep_dimensions"):
-        lines.append(f"  {name:<10} {_ends(file[name])}({len(file[name]):,} values)")
-    if file["status"].ndim > len(texts(file, "sweep_dimensions")):
-        lines.append(f"  {'start':<10} {len(file['start'])} at each point")
+def _examined(data: xarray.Dataset, path: Path) -> Description:
+    lines = [f"{path}: {data.attrs['title']}"]
+    sealed, found = data.encoding["sealed"], damage(data)
+    checked = f"damaged      {found}; {REMEDY}" if found else "checksums    all hold"
+    if not sealed:
+        checked = "checksums    none: written, or changed, by another program"
+    made_by = ["made by" if sealed else "written from a file that was made by"]
+    made_by += _record(data.attrs["provenance"], data.attrs["history"])
+    if data.attrs["kind"] != SWEEP:
+        ragged_dataset.check(data)
+        return Description("\n".join([*lines, *_tables(data), checked, *made_by]), False)
+    sweep = Sweep(data, str(path))
+    for name in sweep.keys:
+        axis = sweep.values(name)
+        lines.append(f"  {name:<10} {axis[0]:g} .. {axis[-1]:g} ({len(axis):,} values)")
+    if "start" in sweep.dims("status"):
+        lines.append(f"  {'start':<10} {sweep.sizes['start']} at each point")
     lines.append("datasets")
-    lines += [_dataset(name, file[name].shape, _described(file[name])) for name in quantities_of(file)]
-    lines += _progress(file)
-    lines.append(f"damaged      {found}; {REMEDY}" if found else "checksums    all hold")
-    lines += [*_turning(file), *_exponents(file), *_accuracy(file), *made_by]
-    return Description("\n".join(lines), bool(found))
+    lines += [_dataset(name, data[name].shape, data[name].attrs.get("description", "")) for name in _in_order(sweep)]
+    lines += [*_progress(sweep), checked]
+    if not data.encoding["complete"] and NOT_COMPUTED not in sweep.values("status"):
+        lines.append("unfinished   its last line is missing; `--resume` completes it")
+    if not found:
+        lines += [*_turning(sweep), *_exponents(sweep), *_accuracy(sweep)]
+    return Description("\n".join([*lines, *made_by]), bool(found))
 
 
-def _of_another_program(found: ForeignError) -> str:
-    """The lines about a file that another program wrote from one of ours."""
-    from vibro_sweep.store.foreign import undoubted  # xarray takes long to be imported
-
-    with undoubted(found) as data:
-        lines = [f"{found.path}: {data.attrs.get('title', '')}"]
-        lines += [f"  {name:<10} ({size:,} values)" for name, size in data.sizes.items()]
-        lines.append("datasets")
-        lines += [_dataset(name, one.shape, one.attrs.get("description", "")) for name, one in data.data_vars.items()]
-        lines.append(f"checksums    none: written by {found.program}, not by this program")
-        history = "\n".join(np.atleast_1d(data.attrs.get("history", "")).astype(str))
-        about = _record(data.attrs.get("provenance", "{}"), history)
-        return "\n".join([*lines, "written from a file that was made by", *about])
+def _in_order(sweep: Sweep) -> list[str]:
+    """The names of what is computed, `status` last."""
+    return [*(name for name in sweep.names if name != "status"), "status"]
 
 
 def _record(provenance: str, history: str) -> list[str]:
@@ -100,115 +93,86 @@ def _dataset(name: str, shape: tuple[int, ...], description: str) -> str:
     return f"  {name:<18} {' x '.join(map(str, shape)) or 'one':<16} {description}"
 
 
-def _tables(file: h5py.File) -> list[str]:
+def _tables(data: xarray.Dataset) -> list[str]:
     """The tables of a file of branches or windows."""
-    arrays = {name: file[name][()] for name in quantities_of(file)}
-    parameters = texts(file, "parameters")
-    if text(file, "kind") == WINDOWS:
+    arrays = {str(name): one.values for name, one in data.data_vars.items()}
+    parameters = [str(name) for name in np.atleast_1d(data.attrs["parameters"])]
+    if data.attrs["kind"] == WINDOWS:
         return windows_table(arrays, parameters[0])
-    if text(file, "kind") == CHART:
+    if data.attrs["kind"] == CHART:
         return curves_table(arrays, parameters)
     return special_table(arrays, parameters)
 
 
-def _ends(axis: h5py.Dataset) -> str:
-    try:
-        return f"{axis[0]:g} .. {axis[-1]:g} "
-    except OSError:  # damaged
-        return ""
-
-
-def _described(dataset: h5py.Dataset) -> str:
-    return text(dataset, "description") if "description" in dataset.attrs else ""
-
-
-def _progress(file: h5py.File) -> list[str]:
+def _progress(sweep: Sweep) -> list[str]:
     """Done, missing and failed."""
-    counts, total = checks.statuses(file), file["status"].size
-    done = counts.total() - counts[NOT_COMPUTED]
+    counts, total = Counter(sweep.values("status").ravel().tolist()), sweep.values("status").size
+    done = total - counts[NOT_COMPUTED]
     failed = {status_of(code): count for code, count in sorted(counts.items()) if code not in (*VALID, NOT_COMPUTED)}
     return [
         f"computed     {done:,} of {total:,} orbits ({100 * done / total:.4g} %)",
         f"missing      {total - done:,}",
         f"failed       {sum(failed.values()):,}",
         *(f"  {one.name}: {count:,}" + f"\n    {one.advice}" * bool(one.advice) for one, count in failed.items()),
-        *([f"not settled  {counts[NOT_SETTLED]:,}{_to_go(file)}"] if counts[NOT_SETTLED] else []),
+        *([f"not settled  {counts[NOT_SETTLED]:,}{_to_go(sweep)}"] if counts[NOT_SETTLED] else []),
     ]
 
 
-def _to_go(file: h5py.File) -> str:
+def _to_go(sweep: Sweep) -> str:
     """How many periods more orbits need that approach a periodic one, as far as it is known."""
-    if "approached_factor" not in file:
+    if "approached_factor" not in sweep:
         return ""
     with np.errstate(all="ignore"):
-        known = [
-            periods_to_go(file["approached_distance"][piece], factors)
-            for piece, factors in checks.readable(file["approached_factor"])
-        ]
-    needed = np.concatenate([values[np.isfinite(values)] for values in known]) if known else np.empty(0)
-    needed = needed[needed > 0]
+        needed = periods_to_go(sweep.values("approached_distance"), sweep.values("approached_factor"))
+    needed = needed[np.isfinite(needed) & (needed > 0)]
     if not len(needed):
         return ""
     longest = float(f"{needed.max():.2g}")
     return f"; {len(needed):,} arrive at a periodic orbit after up to about {longest:,.0f} periods more (`settle`)"
 
 
-def _turning(file: h5py.File) -> list[str]:
+def _turning(sweep: Sweep) -> list[str]:
     """The line on orbits without a period because nothing holds the masses: only a contact between them leaves that."""
-    if not {GAP, "period"} <= set(quantities_of(file)):
+    if not {GAP, "period"} <= set(sweep.names):
         return []
-    without = sum(int((periods == 0).sum()) for _, periods in checks.readable(file["period"]))
+    without = int((sweep.values("period") == 0).sum())
     if not without:
         return []
     from vibro_sweep.engine.impulses.free_modes import turns  # these two take a second to be imported
     from vibro_sweep.scene.scene import parse_scene
 
     with contextlib.suppress(ValueError):  # there is no text of what a function made
-        if turns(parse_scene(text(file, "scene")).system.linear):
+        if turns(parse_scene(sweep.attrs["scene"]).system.linear):
             return [f"turning      {without:,} orbits: {named(REASONS, 'turning').text}"]
     return []
 
 
-def _exponents(file: h5py.File) -> list[str]:
+def _exponents(sweep: Sweep) -> list[str]:
     """The line on how many orbits are chaotic."""
-    if not {"lyapunov", "lyapunov_error"} <= set(quantities_of(file)):
+    if not {"lyapunov", "lyapunov_error"} <= set(sweep.names):
         return []
-    certain, counts = float(file["lyapunov_error"].attrs.get("significant", CERTAIN)), Counter()
-    for piece, exponents in checks.readable(file["lyapunov"]):
-        with contextlib.suppress(OSError):  # a damaged chunk, which is reported elsewhere
-            largest, error = exponents[..., 0], file["lyapunov_error"][piece][..., 0]
-            counts.update(sign_of(largest, error, certain)[~np.isnan(largest)].tolist())
+    certain = float(sweep.attribute("lyapunov_error", "significant") or CERTAIN)
+    largest, error = (sweep.values(name)[..., 0] for name in ("lyapunov", "lyapunov_error"))
+    counts = Counter(sign_of(largest, error, certain)[~np.isnan(largest)].tolist())
     words = f"{counts[1]:,} of {counts.total():,} orbits; not told from zero: {counts[0]:,}"
     return [f"lambda_1     above zero by more than {certain:g} errors: {words}"] if counts else []
 
 
-def _accuracy(file: h5py.File) -> list[str]:
+def _accuracy(sweep: Sweep) -> list[str]:
     lines = []
-    names = quantities_of(file)
-    if {"lyapunov", "lyapunov_residual"} <= set(names):
-        total, known, largest = 0, 0, 0.0
-        for _, exponents in checks.readable(file["lyapunov"]):
-            total += np.count_nonzero(np.isfinite(exponents[..., 0]))
-        for residual in _finite(file["lyapunov_residual"]):
-            known, largest = known + residual.size, max(largest, np.max(np.abs(residual)))
-        if known:
-            lines.append(f"accuracy     |sum of exponents - exact sum| <= {largest:.2g}")
-        if known < total:
-            lines.append(f"             not known where dimensions are lost: {total - known:,} of {total:,} orbits")
-    if "contact_error" in names:
-        missed = [np.max(values) for values in _finite(file["contact_error"])]
-        if missed:
-            lines.append(f"             impacts were found within {max(missed):.2g} of the stop")
-    if "min_impact_speed" in names:
-        speeds = [np.min(values) for values in _finite(file["min_impact_speed"])]
-        if speeds:
-            lines.append(f"             slowest impact {min(speeds):.2g}: the nearest to a graze")
+    if {"lyapunov", "lyapunov_residual"} <= set(sweep.names):
+        total, residuals = _finite(sweep.values("lyapunov")[..., 0]).size, _finite(sweep.values("lyapunov_residual"))
+        if residuals.size:
+            lines.append(f"accuracy     |sum of exponents - exact sum| <= {np.abs(residuals).max():.2g}")
+        if residuals.size < total:
+            unknown = f"{total - residuals.size:,} of {total:,} orbits"
+            lines.append(f"             not known where dimensions are lost: {unknown}")
+    if "contact_error" in sweep and (missed := _finite(sweep.values("contact_error"))).size:
+        lines.append(f"             impacts were found within {missed.max():.2g} of the stop")
+    if "min_impact_speed" in sweep and (speeds := _finite(sweep.values("min_impact_speed"))).size:
+        lines.append(f"             slowest impact {speeds.min():.2g}: the nearest to a graze")
     return lines
 
 
-def _finite(dataset: h5py.Dataset):
-    """The finite numbers of each chunk that has any."""
-    for _, values in checks.readable(dataset):
-        finite = values[np.isfinite(values)]
-        if finite.size:
-            yield finite
+def _finite(values: np.ndarray) -> np.ndarray:
+    return values[np.isfinite(values)]

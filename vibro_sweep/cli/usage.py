@@ -36,7 +36,7 @@ _OPTIONS = {
     "--continue": "--resume",
     "--out": "--output",
 }
-_FILES = {".yaml": "run", ".yml": "run", ".h5": "plot", ".part": "info"}
+_FILES = {".yaml": "run", ".yml": "run", ".h5": "plot"}
 
 
 def called(app: typer.Typer, arguments: list[str] | None) -> None:
@@ -86,7 +86,7 @@ def _option_meant(word: str, context) -> str:
 
 def _file_meant(name: str) -> str | None:
     """A file that exists and is called like it."""
-    for ending in (".part", ".yaml", ".yml", ".h5"):
+    for ending in (".yaml", ".yml", ".h5"):
         if Path(name + ending).exists():
             return name + ending
     folder = Path(name).parent

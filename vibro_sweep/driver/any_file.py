@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vibro_sweep import store
+from vibro_sweep.files.reading import open_whole
 from vibro_sweep.model.files import FileError, checked_path, read_bytes
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ def open(path: str | Path) -> "xarray.Dataset":  # the name that users of xarray
         data = load_orbit(place).to_xarray()
         data.encoding["source"] = str(path)
         return data
-    return store.open(path)
+    return open_whole(place)
 
 
 def first_bytes(path: Path) -> bytes:

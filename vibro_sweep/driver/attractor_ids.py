@@ -1,34 +1,44 @@
 """`attractor_id`: the same number for the same attractor all over a file, once all of its points are there.
 
-It follows from what the file holds alone, read a part at a time: neither blocks nor workers nor interruptions matter.
+It follows from what the file holds alone: neither blocks nor workers nor interruptions matter.
 Orbits with the same numbers of the system, which differ in where they start, are grouped; along the swept numbers of
 the system attractors are followed. Two of these make a curve through the plane that turns round at the end of each row.
 """
 
 import math
-from collections.abc import Iterator, Mapping
-from typing import Any
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
 from vibro_sweep.analysis.attractors.following import Follower, known
 from vibro_sweep.analysis.attractors.grouping import BAD, NOT_SETTLED, group, share
-from vibro_sweep.analysis.attractors.many import ROOM, Orbits, group_pieces
-from vibro_sweep.driver.blocks import boxes
 from vibro_sweep.model.grid import grid
+from vibro_sweep.results.boxes import Box, boxes
 from vibro_sweep.scene import Scene
 
-Box = tuple[slice, ...]
-Arrays = Mapping[str, Any]
+Arrays = dict[str, np.ndarray]
 
 NOWHERE = np.iinfo(np.int64).max  # first orbit of an attractor that a point does not have
 
 
-def number_attractors(scene: Scene, file: Arrays, room: int = ROOM) -> None:
-    """Number the attractors of a scene whose points are all computed; about `room` orbits are held at once.
+ROOM = 300_000  # orbits that are held at once, or those of one system
+USED = ("attractor", "attractor_id", "share", "period", "average", "average_error")
 
-    file : datasets by name, as h5py has them or in memory; `attractor_id` is written
+
+def following(scene: Scene) -> tuple[str, ...]:
+    """The variables of a scene that are known when all of its points are computed."""
+    if "attractors" not in scene.observe:
+        return ()
+    return ("attractor_id", "attractor", "share") if scene.start.kind == "follow" else ("attractor_id",)
+
+
+def number_attractors(scene: Scene, read: Callable[[str], np.ndarray], room: int = ROOM) -> Arrays:
+    """The variables `following` of a scene whose points are all computed; about `room` orbits are held at once.
+
+    read : gives its variables by name
     """
+    file = {name: read(name) for name in USED}
+    file |= {name: np.array(file[name]) for name in following(scene)}
     names = [*scene.sweep, *(["start"] if scene.n_starts > 1 else [])]
     keys = [axis for axis, name in enumerate(names) if not name.startswith("start")]
     orbits = math.prod(extent for axis, extent in enumerate(scene.shape) if axis not in keys)
@@ -40,10 +50,8 @@ def number_attractors(scene: Scene, file: Arrays, room: int = ROOM) -> None:
         axes = {names[axis]: scene.sweep[names[axis]][one] for axis, one in zip(keys, part, strict=True)}
         numbers = grid(scene.system, axes)
         system = [numbers[name].reshape(-1)[order] for name in ("omega", "b")]
-        if orbits > room:
-            _number_point(file, tuple(box), system, follower, room)
-        else:
-            _number_points(file, tuple(box), keys, order, system, follower, scene.start.kind == "follow")
+        _number_points(file, tuple(box), keys, order, system, follower, scene.start.kind == "follow")
+    return {name: file[name] for name in following(scene)}
 
 
 def _curve(shape: tuple[int, ...], size: int) -> Iterator[tuple[Box, np.ndarray]]:
@@ -108,41 +116,11 @@ def _number_points(
         put("share", share(rank))
 
 
-def _number_point(file: Arrays, box: Box, system: list, follower: Follower, room: int) -> None:
-    """Number the attractors of one point whose orbits come in pieces."""
-    shape = tuple(part.stop - part.start for part in box)
-    pieces = [
-        tuple(slice(whole.start + part.start, whole.start + part.stop) for whole, part in zip(box, piece, strict=True))
-        for piece in boxes(shape, room)
-    ]
-
-    def flat(values):
-        return values.reshape(-1, *values.shape[len(box) :])
-
-    ends = np.cumsum([math.prod(part.stop - part.start for part in piece) for piece in pieces]).tolist()
-    label = group_pieces(ends, lambda n: _read(file, pieces[n], flat), room)
-    present, first = np.unique(label, return_index=True)
-    present, first = present[present > NOT_SETTLED], first[present > NOT_SETTLED]
-    order = np.argsort(first)
-    rows = []
-    for place in first[order]:
-        n = int(np.searchsorted(ends, place, side="right"))
-        start = ends[n - 1] if n else 0
-        rows.append([values[place - start] for values in _read(file, pieces[n], flat)])
-    number = np.zeros(label.max(initial=0) + 1, np.int32)
-    if rows:
-        orbits = [np.stack(values)[None] for values in zip(*rows, strict=True)]
-        number[present[order]] = follower.number(known(np.arange(len(rows))[None], *orbits, *system))[0]
-    for start, end, piece in zip([0, *ends], ends, pieces, strict=False):
-        rank = file["attractor"][piece]
-        file["attractor_id"][piece] = np.where(rank == BAD, BAD, number[label[start:end]].reshape(rank.shape))
-
-
-def _read(file: Arrays, box: Box, shaped) -> Orbits:
+def _read(file: Arrays, box: Box, shaped) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """The data in the file of the orbits of a box; averages are NaN where an orbit is on no attractor."""
     rank, period, average, error = (
         shaped(np.asarray(file[name][box])) for name in ("attractor", "period", "average", "average_error")
     )
     average = average.copy()
     average[rank <= NOT_SETTLED] = np.nan
-    return Orbits(period, average, error)
+    return period, average, error

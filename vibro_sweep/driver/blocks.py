@@ -1,6 +1,5 @@
 """Blocks: boxes of a sweep's grid that are computed as one, by any worker, in any order."""
 
-import math
 from collections.abc import Iterator
 from typing import NamedTuple
 
@@ -13,8 +12,9 @@ from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.variational.spectrum import BATCHES
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.grid import grid
+from vibro_sweep.results.boxes import boxes
+from vibro_sweep.results.layout import quantities
 from vibro_sweep.scene import Scene
-from vibro_sweep.store import quantities
 from vibro_sweep.tables.exponents import RUNNING
 from vibro_sweep.tables.observables import WITH_STATES, WITH_TANGENTS
 
@@ -164,23 +164,6 @@ def _starts_cut(scene: Scene, most_orbits: int | None) -> Iterator[tuple[tuple[s
     for at in range(0, count, most):
         part = slice(at, min(at + most, count))
         yield (part,), part
-
-
-def boxes(shape: tuple[int, ...], size: int) -> Iterator[tuple[slice, ...]]:
-    """An array of this shape cut into boxes of at most `size` entries, in order.
-
-    A box has whole trailing axes, then a part of one, then single values.
-    """
-    lengths = list(shape)
-    for axis in reversed(range(len(shape))):
-        lengths[axis] = max(1, min(shape[axis], size))
-        size //= shape[axis]
-    counts = [-(-extent // length) for extent, length in zip(shape, lengths, strict=True)]
-    for n in range(math.prod(counts)):  # itertools.product would hold all of them along an axis
-        corner = [int(at) * length for at, length in zip(np.unravel_index(n, counts), lengths, strict=True)]
-        yield tuple(
-            slice(at, min(at + length, extent)) for at, length, extent in zip(corner, lengths, shape, strict=True)
-        )
 
 
 def _directions(scene: Scene) -> list[tuple[tuple[slice, ...], bool]]:

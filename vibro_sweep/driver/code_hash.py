@@ -25,6 +25,7 @@ SOURCES = (
     "engine",
     "analysis",
     "scene",
+    "results",
     "driver/blocks.py",
     "driver/compute.py",
     "driver/energy_columns.py",

@@ -10,7 +10,6 @@ from dataclasses import dataclass
 
 from numba.core import event
 
-from vibro_sweep import store
 from vibro_sweep.driver import MOST_WORKERS, measuring
 from vibro_sweep.driver.blocks import Block
 from vibro_sweep.driver.compute import compute
@@ -18,12 +17,13 @@ from vibro_sweep.driver.measuring import OrbitCost
 from vibro_sweep.driver.memory_needed import available_cores, orbits_per_block
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.model.arguments import checked_count
+from vibro_sweep.results import layout
 from vibro_sweep.scene import Scene
 
 CROWDED = 0.1  # seconds for which all workers compute, to see how they get on
 FEW_BYTES, WRITTEN = 10**6, 16 * 10**6  # of a file: those that take no time worth saying; those that are written to see
 TRIES = 3  # of a file, of which the least counts: others wait for the disk as well
-COPIES = 2  # results are written into the part, and from there into the file
+COPIES = 1  # of what is written
 BLOCKS_PER_WORKER = 8  # at least, so that workers end together
 BLOCK_SECONDS = 1.0  # of a thread's block: long enough for its overhead not to count, short enough to lose
 
@@ -64,7 +64,7 @@ def estimate(scene: Scene, workers: int | None = None) -> Estimate:
     """The estimated cost of `run` with so many threads, by default one for each core. ValueError for such a number."""
     if workers is not None:
         workers = checked_count("workers", workers, 1, MOST_WORKERS)
-    count, orbits, size = workers or available_cores(), scene.n_points, store.size(scene)
+    count, orbits, size = workers or available_cores(), scene.n_points, layout.size(scene)
     compiling: list[float] = []
     began = time.perf_counter()
     with event.install_timer("numba:compile", compiling.append):

@@ -11,20 +11,19 @@ from vibro_sweep.analysis.branches.search import Node
 from vibro_sweep.driver.jobs import computed
 from vibro_sweep.driver.joining import columns_in_file, joined
 from vibro_sweep.driver.origins import seeds_of
-from vibro_sweep.driver.usable import is_branch
+from vibro_sweep.files.pieces import Pieces
 from vibro_sweep.scene import Continuation
-from vibro_sweep.store.writing import Writer
 from vibro_sweep.tables.coordinates import state
 from vibro_sweep.tables.file_columns import BRANCHES
 from vibro_sweep.tables.quantity import Quantity
 
 
 def followed_branches(
-    scene: Continuation, pool: Executor | None, file: Writer, progress: Callable[[int, int], None] | None
+    scene: Continuation, pool: Executor | None, file: Pieces, progress: Callable[[int, int], None] | None
 ) -> tuple[list[Quantity], Arrays]:
     """Raises NoOrbitError where the scene's first orbit does not exist. progress(done, total) counts branches."""
     names, masses = list(scene.parameter), scene.system.masses
-    evaluate = computed(compute_branch, is_branch, pool, file, progress)
+    evaluate = computed(compute_branch, pool, file, progress)
     search = Branches(tuple(names), tuple(scene.parameter.values()), scene.follow)
     found = search.run(seeds_of(scene, file, pool), scene.depth, evaluate)
     arrays = joined([node.arrays for node in found], SHAPES, names, masses)

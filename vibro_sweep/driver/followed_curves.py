@@ -19,10 +19,9 @@ from vibro_sweep.driver.jobs import computed
 from vibro_sweep.driver.joining import columns_in_file, joined
 from vibro_sweep.driver.origins import seeds_of, specials_of
 from vibro_sweep.driver.swept_plane import edges_in_file
-from vibro_sweep.driver.usable import is_branch, is_curve, is_probe
+from vibro_sweep.files.pieces import Pieces
 from vibro_sweep.scene import Continuation
 from vibro_sweep.scene.continuation import BY_BRANCHES
-from vibro_sweep.store.writing import Writer
 from vibro_sweep.tables.file_columns import CHART, OF_EDGES
 from vibro_sweep.tables.quantity import Quantity
 
@@ -31,7 +30,7 @@ def followed_curves(
     scene: Continuation,
     of_plane: tuple[Plane, np.ndarray, Any] | None,
     pool: Executor | None,
-    file: Writer,
+    file: Pieces,
     progress: Callable[[int, int], None] | None,
 ) -> tuple[list[Quantity], Arrays]:
     """Raises NoOrbitError where there is no orbit to begin with. progress(done, total) counts branches, then curves.
@@ -39,9 +38,9 @@ def followed_curves(
     of_plane : the plane whose edges are explained (swept_plane.py), if the scene begins from one
     """
     names, bounds, more = tuple(scene.parameter), tuple(scene.parameter.values()), {}
-    evaluate = computed(compute_curve, is_curve, pool, file, progress)
+    evaluate = computed(compute_curve, pool, file, progress)
     if of_plane is not None:
-        evaluate_probes = computed(probe, is_probe, pool, file, progress)
+        evaluate_probes = computed(probe, pool, file, progress)
         found = explain(*of_plane, names, bounds, scene.of, scene.depth, evaluate_probes, evaluate)
         curves, more = found.curves, edges_in_file(of_plane[0], found)
     else:
@@ -64,7 +63,7 @@ def _starts(scene: Continuation, names, bounds, pool, file, progress) -> list[Se
 def _on_branches(scene: Continuation, pool, file, progress) -> list[SpecialPoint]:
     """All special points of the branches of the scene's orbits along its first number."""
     key, bounds = next(iter(scene.parameter.items()))
-    keep = computed(compute_branch, is_branch, pool, file, progress)
+    keep = computed(compute_branch, pool, file, progress)
 
     def evaluate(names, jobs):
         return keep([f"branch {name}" for name in names], jobs)

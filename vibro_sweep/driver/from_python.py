@@ -1,13 +1,15 @@
 """A sweep from Python, without YAML: from a system and axes to an `xarray.Dataset`."""
 
 import itertools
-import tempfile
+import secrets
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-from vibro_sweep import store
-from vibro_sweep.driver.sweep import check_how, run_sweep
+from vibro_sweep.driver.any_file import open
+from vibro_sweep.driver.provenance import provenance
+from vibro_sweep.driver.sweep import check_how, fill, run_sweep
+from vibro_sweep.files.subject import about_run
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.arguments import accepts, check_type, checked_state
 from vibro_sweep.model.built import Built
@@ -16,6 +18,8 @@ from vibro_sweep.model.files import file_to_write
 from vibro_sweep.model.oscillator import checked_system
 from vibro_sweep.model.real import number_of
 from vibro_sweep.model.refusals import not_allowed
+from vibro_sweep.results import layout
+from vibro_sweep.results.in_memory import InMemory
 from vibro_sweep.scene import Section, Start, Trajectory, scene_of
 from vibro_sweep.scene.written import axis_data, changed
 from vibro_sweep.tables.coordinates import START
@@ -117,8 +121,8 @@ def sweep(
             *(values[[0, -1]].tolist() for name, values in scene.sweep.items() if name in first)
         ):
             built.compare_units(first | dict(zip(first, corner, strict=True)))
-    quantities = store.quantities(scene)
-    taken = {"status", *quantities, *(own for one in quantities.values() for own in one.dimensions)}
+    quantities = layout.quantities(scene)
+    taken = {*quantities, *(own for one in quantities.values() for own in one.dimensions)}
     taken |= {"start"} if scene.n_starts > 1 else set()
     for name in taken.intersection(scene.sweep):
         raise ArgumentError(not_allowed("axes", name, f"of other names than {', '.join(sorted(taken))}"))
@@ -126,15 +130,13 @@ def sweep(
         raise ArgumentError(not_allowed("mode", mode, "'new' without a file, `output`"))
     if output is not None:
         run_sweep(scene, output, workers, progress=progress, mode=mode)
-        return store.open(output)
-    if store.size(scene) > MOST:
-        size, most = store.size(scene) / 1e9, MOST / 1e9
+        return open(output)
+    if layout.size(scene) > MOST:
+        size, most = layout.size(scene) / 1e9, MOST / 1e9
         raise ArgumentError(
             f"output: None is not allowed; it must be a file, the results take {size:.3g} GB > {most:g} GB"
         )
-    with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder, "sweep.h5")
-        run_sweep(scene, file, workers, progress=progress)
-        with store.open(file) as data:
-            del data.encoding["source"]  # it does not last
-            return data.load()
+    empty = layout.dataset(scene)
+    result = InMemory(empty.assign_attrs(about_run(empty.attrs, provenance(), secrets.token_hex(16))))
+    fill(scene, result, workers, progress=progress)
+    return result.data

@@ -73,19 +73,16 @@ def results(pool: Executor | None, function: Callable, jobs: Iterable[tuple[Any,
             future.cancel()
 
 
-def computed(
-    function: Callable, usable: Callable[[Any], bool], pool: Executor | None, file, progress=None
-) -> Callable[[list[str], list], list]:
-    """evaluate(names, jobs): the results of `function`, which the run `file` (store/writing.py) keeps by these names.
+def computed(function: Callable, pool: Executor | None, file, progress=None) -> Callable[[list[str], list], list]:
+    """evaluate(names, jobs): the results of `function`, which the run `file` (files/pieces.py) keeps by these names.
 
-    usable : whether what was kept is a result of the function (driver/usable.py)
     progress : called as progress(done, total) in jobs
     """
     done = 0
 
     def evaluate(names: list[str], jobs: list) -> list:
         nonlocal done
-        kept = {name: file.get(name, usable) for name in names}
+        kept = {name: file.get(name) for name in names}
         missing = [(name, job) for name, job in zip(names, jobs, strict=True) if kept[name] is None]
         total = done + len(jobs)
         done += len(jobs) - len(missing)

@@ -5,7 +5,6 @@ from pathlib import Path
 
 import numpy as np
 
-from vibro_sweep import store
 from vibro_sweep.analysis.branches import branch_arrays
 from vibro_sweep.analysis.branches.branch import Branch
 from vibro_sweep.analysis.curves import curve_arrays
@@ -19,16 +18,17 @@ from vibro_sweep.driver.any_file import first_bytes
 from vibro_sweep.driver.joining import columns_in_file, part_of
 from vibro_sweep.driver.saved_results import ONE, Saved
 from vibro_sweep.driver.source_file import computed_from
+from vibro_sweep.files.file_errors import StoreError
+from vibro_sweep.files.opening import PART
+from vibro_sweep.files.reading import sweep_in
 from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.files import checked_path
+from vibro_sweep.results import ragged_dataset
+from vibro_sweep.results.sweep_dataset import Sweep
 from vibro_sweep.scene import parse_continuation, parse_scene
-from vibro_sweep.store import StoreError
-from vibro_sweep.store.arrays import Contents
-from vibro_sweep.store.creating import Subject
-from vibro_sweep.store.ragged_files import RaggedContents
 from vibro_sweep.tables.file_columns import CHART, SWEEP, WINDOWS
 
-HDF5 = (b"\x89HDF", b"\x89vibro_sweep")  # with which such files, and the parts of runs, begin
+HDF5 = (b"\x89HDF", PART)  # with which such files, and interrupted runs of 0.2, begin
 Arrays = dict[str, np.ndarray]
 Followed = Branch | BifurcationCurve
 
@@ -51,14 +51,14 @@ def load(path: str | Path) -> PeriodicOrbit | Saved | list[Branch] | list[Bifurc
     path = checked_path("path", path)
     if not first_bytes(path).startswith(HDF5):
         return load_orbit(path)
-    with computed_from(path), store.contents(path) as data:
+    with computed_from(path), sweep_in(path, computes=True) as data:
         try:
             return _object_in(data)
         except (KeyError, IndexError, TypeError, ArithmeticError) as error:  # an edited file, whose checksums hold
             raise StoreError(f"{path} is damaged ({error})") from None
 
 
-def _object_in(data: Contents) -> Saved | list[Branch] | list[BifurcationCurve]:
+def _object_in(data: Sweep) -> Saved | list[Branch] | list[BifurcationCurve]:
     """What a file of branches, curves or windows holds, all of it computed: what is wrong with a file is told now."""
     kind = data.attrs.get("kind", SWEEP)
     if kind == SWEEP:
@@ -73,7 +73,7 @@ def _object_in(data: Contents) -> Saved | list[Branch] | list[BifurcationCurve]:
     return found[0] if ONE in data.attrs and found else found
 
 
-def _each(data: Contents, arrays: Arrays, names: list[str]) -> list[Followed]:
+def _each(data: Sweep, arrays: Arrays, names: list[str]) -> list[Followed]:
     """The branches or curves of a file."""
     system = parse_continuation(data.attrs["scene"]).system
     numbers = {name: value for name, value in system.numbers.items() if isinstance(value, float)}
@@ -90,7 +90,7 @@ def _each(data: Contents, arrays: Arrays, names: list[str]) -> list[Followed]:
     return result
 
 
-def _windows(data: Contents, arrays: Arrays, names: list[str]) -> Windows:
+def _windows(data: Sweep, arrays: Arrays, names: list[str]) -> Windows:
     """The windows of a file."""
     system = parse_scene(data.attrs["scene"]).system
     chosen = {name: data.attrs[name] for name in system.described if name in data.attrs and name not in names}
@@ -110,10 +110,10 @@ def _windows(data: Contents, arrays: Arrays, names: list[str]) -> Windows:
     shape = data.attrs["sweep_shape"]
     result.window, result.reason = (arrays[name].reshape(shape) for name in ("orbit_window", "orbit_reason"))
     result.unvisited = [_unvisited(arrays, u, result) for u in range(len(arrays["unvisited_window"]))]
-    about = ("sweep", "parameter", "sweep_shape", *chosen)
-    attributes = {name: data.attrs[name] for name in about} | {"parameters": names}
-    subject = Subject(WINDOWS, str(data.attrs["title"]).removeprefix("vibro_sweep: "), data.attrs["scene"], attributes)
-    result._contents_of_file = partial(RaggedContents, subject, columns_in_file(WINDOWS, names, system), arrays)
+    attributes = {name: data.attrs[name] for name in ("sweep", "parameter", "sweep_shape", *chosen)}
+    title = str(data.attrs["title"]).removeprefix("vibro_sweep: ")
+    about = ragged_dataset.about(WINDOWS, title, data.attrs["scene"], attributes | {"parameters": names})
+    result._dataset = partial(ragged_dataset.dataset, about, columns_in_file(WINDOWS, names, system), arrays)
     return result
 
 

@@ -8,9 +8,9 @@ from vibro_sweep.analysis.single.tables import table_of
 from vibro_sweep.engine.records import result_of
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.tables.flight import CHUNK, node_of
+from vibro_sweep.results.layout import size
 from vibro_sweep.scene import Scene
 from vibro_sweep.scene.size import COPIES, fixed_numbers, sample_numbers, scratch_numbers, written_numbers
-from vibro_sweep.store import size
 
 BLOCK_BYTES = 12e6  # of results; larger blocks leave the processor's cache and are not faster
 BYTES_UNDER_WAY = 450e6  # of blocks and workspaces together, and

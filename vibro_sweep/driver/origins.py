@@ -6,7 +6,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from vibro_sweep import store
 from vibro_sweep.analysis.branches import branch_arrays as branches
 from vibro_sweep.analysis.branches.branch_arrays import special_point
 from vibro_sweep.analysis.branches.branch_switching import switch
@@ -26,11 +25,12 @@ from vibro_sweep.analysis.windows.window_search import RowWindow, WindowSearch
 from vibro_sweep.driver.joining import part_of
 from vibro_sweep.driver.source_file import SourceError
 from vibro_sweep.driver.windows import rows_in, search_of
+from vibro_sweep.files.pieces import Pieces
+from vibro_sweep.files.reading import sweep_in
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.refusals import cut, shown
+from vibro_sweep.results.sweep_dataset import Sweep
 from vibro_sweep.scene import Continuation, parse_continuation, parse_scene
-from vibro_sweep.store.arrays import Contents
-from vibro_sweep.store.writing import Writer
 from vibro_sweep.tables.bifurcations import CURVES, WAYS
 from vibro_sweep.tables.file_columns import CHART, SWEEP, WINDOWS
 from vibro_sweep.tables.outcomes import ORBITS, named
@@ -51,15 +51,15 @@ def source_of(scene: Continuation) -> Source:
     """Raises ValueError where the file that a scene begins from is of another oscillator than the scene."""
     free = {name: lo for name, (lo, _) in scene.parameter.items()}
     if scene.origin == "sweep":
-        with store.contents(Path(scene.begin)) as data:
+        with sweep_in(Path(scene.begin), computes=True) as data:
             if data.attrs.get("kind", SWEEP) != SWEEP:
                 raise SourceError(f"continue.from.sweep: {scene.begin} holds {cut(str(data.attrs['kind']))}, no sweep")
             own = _rows(scene, data)[0].system
-            run_id = data.attrs.get("identity", "")
+            run_id = data.run_id
     elif scene.origin == "branches":
-        with store.contents(Path(scene.begin)) as data:
+        with sweep_in(Path(scene.begin), computes=True) as data:
             own, names = _at_special(scene, data)
-            run_id = data.attrs["identity"]
+            run_id = data.run_id
         free |= {name: own.numbers[name] for name in names}
     else:
         return Source(scene.system, "")
@@ -78,7 +78,7 @@ def attributes_of(scene: Continuation, source: Source) -> dict[str, Any]:
     return {"parameters": list(scene.parameter)} | held | ({"source": source.run_id} if source.run_id else {})
 
 
-def seeds_of(scene: Continuation, file: Writer, pool: Executor | None) -> list[Seed]:
+def seeds_of(scene: Continuation, file: Pieces, pool: Executor | None) -> list[Seed]:
     """The first orbits of a scene, those within its range; `file` keeps what it takes to find them.
 
     Raises NoOrbitError where there is none.
@@ -117,7 +117,7 @@ def _check_same(scene: Continuation, own: AnyOscillator, asked: AnyOscillator) -
             raise SourceError(f"continue.from.{scene.origin}: {named}; branches belong to one oscillator")
 
 
-def _rows(scene: Continuation, data: Contents) -> list[Row]:
+def _rows(scene: Continuation, data: Sweep) -> list[Row]:
     """The row of a sweep along the first number; of a plane that at the scene's value of the other key.
 
     All rows of a plane whose keys are both followed. Raises ValueError.
@@ -131,9 +131,9 @@ def _rows(scene: Continuation, data: Contents) -> list[Row]:
     return found
 
 
-def _from_sweep(scene: Continuation, key: str, file: Writer, pool: Executor | None) -> list[PeriodicOrbit]:
+def _from_sweep(scene: Continuation, key: str, file: Pieces, pool: Executor | None) -> list[PeriodicOrbit]:
     """An orbit of each window of a sweep that reaches into the scene's range, near where it was found."""
-    with store.contents(Path(scene.begin)) as data:
+    with sweep_in(Path(scene.begin), computes=True) as data:
         rows = _rows(scene, data)
     orbits = []
     for found in _chosen(scene, search_of(rows, file, pool)):
@@ -170,7 +170,7 @@ def _from_branches(scene: Continuation, key: str) -> list[PeriodicOrbit]:
     return found if key == parameter else [special.orbit, *found]
 
 
-def specials_of(scene: Continuation, file: Writer, pool: Executor | None) -> list[SpecialPoint]:
+def specials_of(scene: Continuation, file: Pieces, pool: Executor | None) -> list[SpecialPoint]:
     """The special points at which curves begin: the ends of a sweep's windows, or one of a file.
 
     `file` keeps what it takes to find them. Raises ValueError where the point is of a type that has no curve.
@@ -183,7 +183,7 @@ def specials_of(scene: Continuation, file: Writer, pool: Executor | None) -> lis
             named = f"{scene.special} is a {special.type!r} in {scene.begin}"
             raise SourceError(f"continue.from.special: {named}; it must be one of {', '.join(CURVES)}")
         return [special]
-    with store.contents(Path(scene.begin)) as data:
+    with sweep_in(Path(scene.begin), computes=True) as data:
         rows = _rows(scene, data)
     key = next(iter(scene.parameter))
     chosen = _chosen(scene, search_of(rows, file, pool))
@@ -192,7 +192,7 @@ def specials_of(scene: Continuation, file: Writer, pool: Executor | None) -> lis
 
 def _special(scene: Continuation) -> tuple[SpecialPoint, list[str]]:
     """The special point of `{branches: FILE, special: n}`, and the numbers that vary in that file."""
-    with store.contents(Path(scene.begin)) as data:
+    with sweep_in(Path(scene.begin), computes=True) as data:
         system, names = _at_special(scene, data)
         kind = data.attrs["kind"]
         arrays = {name: data.values(name) for name in data.names}
@@ -203,7 +203,7 @@ def _special(scene: Continuation) -> tuple[SpecialPoint, list[str]]:
     return special_point(part_of(arrays, branches.SHAPES, names[:1], index), place, names[0], system), names
 
 
-def _at_special(scene: Continuation, data: Contents) -> tuple[AnyOscillator, list[str]]:
+def _at_special(scene: Continuation, data: Sweep) -> tuple[AnyOscillator, list[str]]:
     """The oscillator at the scene's special point, and the numbers that vary in the file. Raises ValueError."""
     if data.attrs.get("kind", SWEEP) == SWEEP:
         raise SourceError(f"continue.from.branches: {scene.begin} holds no branches")

@@ -11,13 +11,12 @@ import numpy as np
 from vibro_sweep.driver.progress import given_or_bar
 from vibro_sweep.driver.run_continuation import run_continuation
 from vibro_sweep.driver.sweep import RunReport, check_how, run_sweep
+from vibro_sweep.files.opening import open_file
 from vibro_sweep.model.arguments import check_type, checked_count
 from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.files import file_to_write
 from vibro_sweep.model.refusals import not_allowed
 from vibro_sweep.scene import Continuation, Scene
-from vibro_sweep.store.attributes import text
-from vibro_sweep.store.opening import opened
 from vibro_sweep.tables.bifurcations import CODIMENSION_TWO, TYPES
 from vibro_sweep.tables.file_columns import CHART
 
@@ -38,14 +37,14 @@ def run(
     Parameters
     ----------
     scene : of a sweep, of branches or of curves, as `load_scene` returns it
-    output : the HDF5 file; while it is computed it is `output`.part, which of a sweep `open`, `info` and `plot` read at
-        any moment
+    output : the HDF5 file; that of a sweep is there from the beginning, and can be read at any moment: `status` is -1
+        where nothing is computed yet
     workers : of a sweep threads, by default one for each core; of branches and curves processes, by default one; of an
         `executor` that does not say how many it has, its workers
     executor : any `concurrent.futures.Executor` instead
     progress : called as progress(done, total) in orbits, branches or curves, from this thread; left out: a bar on a
         terminal or in a notebook, unless the level of the logger `vibro_sweep` is WARNING
-    mode : "new" (nothing that exists is replaced), "resume" (continue `output`.part where it stopped) or "overwrite"
+    mode : "new" (nothing that exists is replaced), "resume" (continue `output` where it stopped) or "overwrite"
     block : of a sweep, points of which a worker computes all starts at once; fewer where memory is short; left out: as
         many as take a moment
 
@@ -82,11 +81,11 @@ def run(
 
 def _report(path: Path, computed: bool) -> RunReport:
     """The report on a file of branches or curves; `failed` counts those that could not be followed to both ends."""
-    with opened(path, content=False) as (file, _):
-        types = CODIMENSION_TWO if text(file, "kind") == CHART else TYPES
-        names = np.array([one.name for one in types])[file["special_type"][()]]
-        branches, failed = len(file["branch_period"]), np.unique(file["special_branch"][()][names == "failed"])
-        seconds = json.loads(text(file, "provenance"))["wall_time_s"]
+    with open_file(path) as data:
+        types = CODIMENSION_TWO if data.attrs["kind"] == CHART else TYPES
+        names = np.array([one.name for one in types])[data["special_type"].values]
+        branches, failed = data["branch_period"].size, np.unique(data["special_branch"].values[names == "failed"])
+        seconds = json.loads(data.attrs["provenance"])["wall_time_s"]
     counts = {"ok": branches - len(failed), "failed": len(failed)}
     statuses = {name: count for name, count in counts.items() if count}
     return RunReport(branches, len(failed), statuses, seconds, branches if computed else 0)

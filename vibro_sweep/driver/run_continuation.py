@@ -4,7 +4,6 @@ from collections.abc import Callable
 from concurrent.futures import Executor
 from pathlib import Path
 
-from vibro_sweep import store
 from vibro_sweep.driver.followed_branches import followed_branches
 from vibro_sweep.driver.followed_curves import followed_curves
 from vibro_sweep.driver.jobs import workers_of
@@ -12,10 +11,11 @@ from vibro_sweep.driver.origins import NoOrbitError, attributes_of, source_of
 from vibro_sweep.driver.provenance import provenance
 from vibro_sweep.driver.source_file import computed_from_source
 from vibro_sweep.driver.swept_plane import plane_of
+from vibro_sweep.files.pieces import pieces_run
+from vibro_sweep.files.subject import Complete
 from vibro_sweep.model.files import file_to_write
+from vibro_sweep.results import ragged_dataset
 from vibro_sweep.scene import Continuation
-from vibro_sweep.store.creating import Subject
-from vibro_sweep.store.ragged_files import RaggedContents
 from vibro_sweep.tables.file_columns import BRANCHES, CHART
 
 
@@ -37,9 +37,9 @@ def run_continuation(
     with computed_from_source(scene):
         of_plane = plane_of(scene) if of_curves else None
         attributes = attributes_of(scene, source_of(scene))
-        subject = Subject(CHART if of_curves else BRANCHES, scene.name, scene.text, attributes)
-        with store.writer(store.ragged_run(subject, provenance(), scene.inputs), output, mode) as file:
-            if isinstance(file, store.Complete):
+        about = ragged_dataset.about(CHART if of_curves else BRANCHES, scene.name, scene.text, attributes)
+        with pieces_run(about, output, mode, provenance(), scene.inputs) as file:
+            if isinstance(file, Complete):
                 return False
             with workers_of(workers, executor) as pool:
                 try:
@@ -50,5 +50,5 @@ def run_continuation(
                 except NoOrbitError:
                     file.drop()
                     raise
-            file.finish(RaggedContents(subject, *found).write)
+            file.finish(ragged_dataset.dataset(about, *found))
             return True

@@ -1,14 +1,13 @@
 """Branches, bifurcation curves and windows of Python as files: `.save` and `.to_xarray`."""
 
 import math
+import secrets
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import h5py
 import numpy as np
 
-from vibro_sweep import store
 from vibro_sweep.analysis.branches import branch_arrays
 from vibro_sweep.analysis.branches.branch import Branch
 from vibro_sweep.analysis.curves import curve_arrays
@@ -17,14 +16,15 @@ from vibro_sweep.analysis.windows.window import Windows
 from vibro_sweep.driver.joining import columns_in_file, joined
 from vibro_sweep.driver.origins import Source, attributes_of
 from vibro_sweep.driver.provenance import provenance
+from vibro_sweep.files.making import make
+from vibro_sweep.files.subject import about_run, check_outputs
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.files import ExistingFileError, file_to_write
 from vibro_sweep.model.linear import Family
 from vibro_sweep.model.refusals import ParameterError
+from vibro_sweep.results import ragged_dataset
 from vibro_sweep.scene import Continuation
-from vibro_sweep.store.creating import Subject
-from vibro_sweep.store.ragged_files import RaggedContents
 from vibro_sweep.tables.bifurcations import CURVES
 from vibro_sweep.tables.coordinates import state
 from vibro_sweep.tables.file_columns import BRANCHES, CHART
@@ -38,26 +38,24 @@ ONE = "saved"  # attribute of a file with a single branch or curve, which is not
 
 def dataset_of(result: Saved) -> "xarray.Dataset":
     """The Dataset that `open` gives of the file of a result."""
-    from vibro_sweep.store import lazy
-
-    with h5py.File(contents_of_file(result).image(provenance())) as file:
-        return lazy.dataset_of(file).load()
+    data = _dataset(result)
+    return data.assign_attrs(about_run(data.attrs, provenance(), secrets.token_hex(16)))
 
 
 def save(result: Saved, path: str | Path) -> Path:
     """Write the file of a result. Raises ExistingFileError, StoreError."""
-    path, contents = file_to_write("path", path), contents_of_file(result)
+    path, data = file_to_write("path", path), dataset_of(result)
     if path.exists():
         raise ExistingFileError(path)
-    with store.writer(store.ragged_run(contents.subject, provenance()), path, "new") as file:
-        file.finish(contents.write)
+    check_outputs(path, "new", ())
+    make(path, data)
     return path
 
 
-def contents_of_file(result: Saved) -> RaggedContents:
+def _dataset(result: Saved) -> "xarray.Dataset":
     """Raises ValueError for what no file can hold."""
     if isinstance(result, Windows):
-        return result._contents_of_file()
+        return result._dataset()
     system = result.special[0].orbit.system
     if isinstance(system, Family):
         raise ArgumentError("a result of a Family has no file: its numbers are those of a function")
@@ -75,10 +73,9 @@ def contents_of_file(result: Saved) -> RaggedContents:
         more["branch_sections"] = np.array([sections.shape[1]])
     scene = _scene_of(arrays, names, system)
     attributes = attributes_of(scene, Source(scene.system, "")) | {ONE: type(result).__name__}
-    subject = Subject(kind, f"{type(result).__name__} in {', '.join(names)}", scene.to_yaml(), attributes)
-    return RaggedContents(
-        subject, columns_in_file(kind, names, system), joined([arrays], shapes, names, system.masses) | none | more
-    )
+    about = ragged_dataset.about(kind, f"{type(result).__name__} in {', '.join(names)}", scene.to_yaml(), attributes)
+    found = joined([arrays], shapes, names, system.masses) | none | more
+    return ragged_dataset.dataset(about, columns_in_file(kind, names, system), found)
 
 
 def _scene_of(arrays: dict[str, np.ndarray], names: Sequence[str], system: AnyOscillator) -> Continuation:

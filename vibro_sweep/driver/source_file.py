@@ -3,11 +3,18 @@
 from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pathlib import Path
+from typing import TYPE_CHECKING
 
+from vibro_sweep.files.file_errors import StoreError
+from vibro_sweep.files.reading import sweep_in
+from vibro_sweep.model.arguments import check_type
 from vibro_sweep.model.errors import VibroSweepError
 from vibro_sweep.model.files import FileError
+from vibro_sweep.results.sweep_dataset import Sweep
 from vibro_sweep.scene import Continuation
-from vibro_sweep.store import StoreError
+
+if TYPE_CHECKING:
+    import xarray
 
 
 class SourceError(VibroSweepError, ValueError):
@@ -27,6 +34,24 @@ def computed_from(path: str | Path, key: str = "") -> Iterator[None]:
         raise
     except ValueError as error:
         raise SourceError(f"{key}{path}: {error}") from error
+
+
+@contextmanager
+def swept(data: "str | Path | xarray.Dataset") -> Iterator[Sweep]:
+    """The results of a sweep from which something is computed: its file, or a Dataset of `open` or `sweep`.
+
+    What is refused while they are used is said with the name of the file. Raises StoreError, SourceError, and TypeError
+    for anything else.
+    """
+    if not isinstance(data, (str, Path)):
+        from xarray import Dataset  # it is imported already where it is one
+
+        check_type("data", data, Dataset, "the path of a file, or a Dataset")
+        if not {"scene", "sweep_dimensions"} <= data.attrs.keys():
+            raise SourceError("data: this dataset is not one of `vibro_sweep.open` or `vibro_sweep.sweep`")
+    name = data if isinstance(data, (str, Path)) else str(data.encoding.get("source", "data"))
+    with computed_from(name), sweep_in(data, computes=True) as found:
+        yield found
 
 
 def computed_from_source(scene: Continuation) -> AbstractContextManager[None]:

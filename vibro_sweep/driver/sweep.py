@@ -5,14 +5,12 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import closing
 from dataclasses import dataclass, field
-from functools import partial
 from pathlib import Path
 
-import h5py
+import numpy as np
 
-from vibro_sweep import store
 from vibro_sweep.driver import MOST_WORKERS
-from vibro_sweep.driver.attractor_ids import number_attractors
+from vibro_sweep.driver.attractor_ids import following, number_attractors
 from vibro_sweep.driver.blocks import Block, blocks, next_part, whole_chains
 from vibro_sweep.driver.compute import CHAIN_ENDS
 from vibro_sweep.driver.cost import (
@@ -31,12 +29,15 @@ from vibro_sweep.driver.pool import as_computed
 from vibro_sweep.driver.progress import given_or_bar
 from vibro_sweep.driver.provenance import provenance
 from vibro_sweep.engine.halting import heed, interruptible, new_halt
+from vibro_sweep.files.subject import Complete, check_mode, now
+from vibro_sweep.files.sweep_file import SweepFile
+from vibro_sweep.files.sweep_runs import sweep_run
 from vibro_sweep.model.arguments import check_call
 from vibro_sweep.model.errors import ArgumentError, ArgumentTypeError
 from vibro_sweep.model.refusals import not_allowed
+from vibro_sweep.results import layout
+from vibro_sweep.results.in_memory import InMemory
 from vibro_sweep.scene import Scene
-from vibro_sweep.store.beginning import check_mode
-from vibro_sweep.store.datasets import write_following
 from vibro_sweep.tables.outcomes import VALID, status_of
 
 _log = logging.getLogger("vibro_sweep")
@@ -87,34 +88,48 @@ def run_sweep(
     block: int | None = None,
 ) -> RunReport:
     """Compute a sweep and write its file; arguments and errors as of `run`."""
-    total = scene.n_points
-    with store.writer(store.sweep_run(scene, provenance()), output, mode) as file:
-        if isinstance(file, store.Complete):
+    data, size = layout.dataset(scene), layout.size(scene)
+    with sweep_run(data, following(scene), size, output, mode, provenance(), scene.inputs) as file:
+        if isinstance(file, Complete):
             if progress:
-                progress(total, total)
-            return _report(total, *file, 0)
-        done = file.done()
-        missing = total - done
-        with given_or_bar(progress, total) as tell:
-            if tell:
-                tell(done, total)
-            if missing:
-                workers_here = workers or available_cores()
-                with closing(_results(scene, file, missing, workers_here, executor, block)) as results:
-                    for box, arrays in results:
-                        file.write(box, arrays)
-                        done += arrays["status"].size
-                        if tell:
-                            tell(min(done, total), total)
-        threads = (workers or available_cores()) if executor is None else None
-        made = file.finish(partial(_complete, scene), **_how(scene, threads, executor))
-    return _report(total, *made, missing)
+                progress(scene.n_points, scene.n_points)
+            return _report(file, 0)
+        return fill(scene, file, workers, executor, progress, block)
 
 
-def _report(total: int, statuses: dict[int, int], seconds: float, computed: int) -> RunReport:
-    bad = sum(number for code, number in statuses.items() if code not in VALID)
-    named = {status_of(code).name: number for code, number in statuses.items()}
-    return RunReport(total, bad, named, seconds, computed)
+def fill(
+    scene: Scene,
+    file: SweepFile | InMemory,
+    workers: int | None = None,
+    executor: Executor | None = None,
+    progress: Callable[[int, int], None] | None = None,
+    block: int | None = None,
+) -> RunReport:
+    """Compute what is missing of a sweep; arguments and errors as of `run`."""
+    total = scene.n_points
+    missing, done = total - file.done(), file.done()
+    with given_or_bar(progress, total) as tell:
+        if tell:
+            tell(done, total)
+        if missing:
+            workers_here = workers or available_cores()
+            with closing(_results(scene, file, missing, workers_here, executor, block)) as results:
+                for box, arrays in results:
+                    file.write(box, arrays)
+                    done += arrays["status"].size
+                    if tell:
+                        tell(min(done, total), total)
+    numbered = number_attractors(scene, file.read) if "attractors" in scene.observe else {}
+    threads = (workers or available_cores()) if executor is None else None
+    seconds = file.finish(numbered, _how(scene, threads, executor) | {"history": [f"{now()} complete"]})
+    codes, counts = np.unique(file.status, return_counts=True)
+    return _report(Complete(dict(zip(codes.tolist(), counts.tolist(), strict=True)), seconds), missing)
+
+
+def _report(made: Complete, computed: int) -> RunReport:
+    bad = sum(number for code, number in made.statuses.items() if code not in VALID)
+    named = {status_of(code).name: number for code, number in made.statuses.items()}
+    return RunReport(sum(named.values()), bad, named, made.seconds, computed)
 
 
 def check_how(workers, executor, progress, mode) -> None:
@@ -127,15 +142,8 @@ def check_how(workers, executor, progress, mode) -> None:
     check_mode(mode)
 
 
-def _complete(scene: Scene, file: h5py.File) -> None:
-    """Write what a file holds besides the results of blocks."""
-    write_following(file, scene)
-    if "attractors" in scene.observe:
-        number_attractors(scene, file)
-
-
 def _results(
-    scene: Scene, file: store.Writer, missing: int, workers: int, executor: Executor | None, points: int | None
+    scene: Scene, file: SweepFile | InMemory, missing: int, workers: int, executor: Executor | None, points: int | None
 ) -> Iterator[tuple]:
     """Results of all blocks, of so many points, with one of the missing orbits, as they come."""
     count = workers if executor is None else _worker_count(executor, workers)

@@ -5,11 +5,11 @@ from typing import Any
 
 import numpy as np
 
-from vibro_sweep import store
 from vibro_sweep.analysis.windows.edges import Plane, ends_of
 from vibro_sweep.analysis.windows.explained import Explained
 from vibro_sweep.analysis.windows.rows import check_data
 from vibro_sweep.driver.source_file import SourceError
+from vibro_sweep.files.reading import sweep_in
 from vibro_sweep.model.refusals import cut
 from vibro_sweep.scene import Continuation, parse_scene
 from vibro_sweep.tables.coordinates import state
@@ -23,8 +23,8 @@ def plane_of(scene: Continuation) -> tuple[Plane, np.ndarray, Any] | None:
     if scene.origin != "sweep":
         return None
     names = list(scene.parameter)
-    with store.contents(scene.begin) as data:
-        keys = [str(name) for name in np.atleast_1d(data.attrs["sweep_dimensions"])]
+    with sweep_in(scene.begin, computes=True) as data:
+        keys = data.keys
         if len(keys) != 2:
             return None
         check_data(data)

@@ -5,14 +5,13 @@ from concurrent.futures import Executor
 from functools import partial
 from pathlib import Path
 from types import NoneType
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from vibro_sweep import store
 from vibro_sweep.analysis.branches.branch_arrays import SHAPES, Arrays
 from vibro_sweep.analysis.windows.job import window_of
-from vibro_sweep.analysis.windows.rows import Contents, Row, check_data, chosen_key, rows_of, swept_in
+from vibro_sweep.analysis.windows.rows import Row, check_data, chosen_key, rows_of
 from vibro_sweep.analysis.windows.unvisited import unvisited_in
 from vibro_sweep.analysis.windows.window import Windows, in_file_order, windows_of
 from vibro_sweep.analysis.windows.window_search import WindowSearch
@@ -20,16 +19,17 @@ from vibro_sweep.driver.jobs import computed, workers_of
 from vibro_sweep.driver.joining import columns_in_file, joined
 from vibro_sweep.driver.progress import given_or_bar
 from vibro_sweep.driver.provenance import provenance
+from vibro_sweep.driver.source_file import swept
 from vibro_sweep.driver.sweep import check_how
-from vibro_sweep.driver.swept import contents_of
-from vibro_sweep.driver.usable import is_window
+from vibro_sweep.files.pieces import Pieces, pieces_run
+from vibro_sweep.files.subject import Complete
 from vibro_sweep.model.arguments import check_type
 from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.files import checked_path, file_to_write
 from vibro_sweep.model.refusals import not_allowed
+from vibro_sweep.results import ragged_dataset
+from vibro_sweep.results.sweep_dataset import Sweep
 from vibro_sweep.scene import parse_scene
-from vibro_sweep.store.creating import Subject
-from vibro_sweep.store.ragged_files import RaggedContents
 from vibro_sweep.tables.coordinates import state
 from vibro_sweep.tables.file_columns import UNVISITED, WINDOWS
 
@@ -82,13 +82,13 @@ def windows(
     with given_or_bar(progress, 0) as tell:
         if output is not None:
             search = run_windows(data, output, parameter, workers, None, tell, mode)
-        with contents_of(data) as found:
+        with swept(data) as found:
             rows = rows_in(found, parameter)
             if search is None:
                 with workers_of(workers, None) as pool:
                     search = search_of(rows, NothingKept(), pool, tell)
             result = windows_of(search)
-            result._contents_of_file = partial(_contents_of_file, _subject(found, rows[0].parameter), search)
+            result._dataset = partial(_dataset, _about(found, rows[0].parameter), search)
             return result
 
 
@@ -105,24 +105,24 @@ def run_windows(
     already."""
     output = file_to_write("output", output)
     inputs = [checked_path("data", data)] if isinstance(data, (str, Path)) else []
-    with contents_of(data) as found:
+    with swept(data) as found:
         rows = rows_in(found, parameter)
-        subject = _subject(found, rows[0].parameter)
-        with store.writer(store.ragged_run(subject, provenance(), inputs), output, mode) as file:
-            if isinstance(file, store.Complete):
+        about = _about(found, rows[0].parameter)
+        with pieces_run(about, output, mode, provenance(), inputs) as file:
+            if isinstance(file, Complete):
                 return None
             with workers_of(workers, executor) as pool:
                 search = search_of(rows, file, pool, progress)
             if progress:
                 progress(search.total, search.total)
-            file.finish(_contents_of_file(subject, search).write)
+            file.finish(_dataset(about, search))
             return search
 
 
 class NothingKept:
     """The pieces of a run without a file."""
 
-    def get(self, _key: str, _usable: Callable[[Arrays], bool]) -> None:
+    def get(self, _key: str) -> None:
         """Nothing is known already."""
 
     def write(self, _key: str, _arrays: Arrays) -> None:
@@ -131,7 +131,7 @@ class NothingKept:
 
 def search_of(
     rows: list[Row],
-    file: store.Writer | NothingKept,
+    file: Pieces | NothingKept,
     pool: Executor | None,
     progress: Callable[[int, int], None] | None = None,
 ) -> WindowSearch:
@@ -142,30 +142,30 @@ def search_of(
         if progress:
             progress(max(search.done, done), search.total)
 
-    search.search(computed(window_of, is_window, pool, file, tell))
+    search.search(computed(window_of, pool, file, tell))
     return search
 
 
-def rows_in(data: Contents, parameter: str | None) -> list[Row]:
+def rows_in(data: Sweep, parameter: str | None) -> list[Row]:
     """The rows of a sweep along a swept number. Raises ValueError where there can be no windows."""
     check_data(data)
     system = parse_scene(data.attrs["scene"]).system
-    system = system.replace(**{name: value for name, value in data.chosen.items() if name in system.described})
+    system = system.replace(**{name: value for name, value in data.held.items() if name in system.described})
     return list(rows_of(data, system, chosen_key(data, system, parameter)))
 
 
-def _subject(data: Contents, parameter: str) -> Subject:
+def _about(data: Sweep, parameter: str) -> dict[str, Any]:
+    """The attributes of the windows of a sweep."""
     title = str(data.attrs["title"]).removeprefix("vibro_sweep: ")
-    swept = swept_in(data)
-    names = [parameter, *(name for name in swept if name != parameter)]
-    attributes = {"sweep": data.attrs.get("identity", ""), "parameter": parameter, "parameters": names}
-    attributes["sweep_shape"] = np.array([*(data.sizes[name] for name in swept), data.sizes.get("start", 1)])
-    attributes |= data.chosen  # of a part of a Dataset: the values of numbers that were swept
-    return Subject(WINDOWS, f"windows of {title}", data.attrs["scene"], attributes)
+    names = [parameter, *(name for name in data.keys if name != parameter)]
+    attributes = {"sweep": data.run_id, "parameter": parameter, "parameters": names}
+    attributes["sweep_shape"] = np.array([*(data.sizes[name] for name in data.keys), data.sizes.get("start", 1)])
+    attributes |= data.held  # of a part of a Dataset: the values of numbers that were swept
+    return ragged_dataset.about(WINDOWS, f"windows of {title}", data.attrs["scene"], attributes)
 
 
-def _contents_of_file(subject: Subject, search: WindowSearch) -> RaggedContents:
-    return RaggedContents(subject, *_contents(search))
+def _dataset(about: dict[str, Any], search: WindowSearch) -> "xarray.Dataset":
+    return ragged_dataset.dataset(about, *_contents(search))
 
 
 def _contents(search: WindowSearch) -> tuple:

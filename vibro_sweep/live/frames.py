@@ -14,8 +14,8 @@ from vibro_sweep.live.pace import Pace
 from vibro_sweep.model.arguments import check_type
 from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.refusals import not_allowed
+from vibro_sweep.results.layout import quantities
 from vibro_sweep.scene import Scene
-from vibro_sweep.store import quantities
 
 PIECE = 0.01  # seconds
 
@@ -77,7 +77,7 @@ def frames(
         raise ArgumentError(not_allowed("scene.sweep", [*scene.sweep], "one number"))
     if "attractors" in scene.observe:
         raise ArgumentError(not_allowed("scene.observe", "attractors", "of other words: these take the whole sweep"))
-    known = {*quantities(scene), "status"}
+    known = {*quantities(scene)}
     for name in variables or ():
         if name not in known | {"end"}:
             raise ArgumentError(not_allowed("variables", name, f"of {', '.join(sorted(known))}"))

@@ -3,13 +3,12 @@
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
+from vibro_sweep.files.opening import open_file
 from vibro_sweep.model.built import BUILD
 from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.refusals import cut
 from vibro_sweep.scene import Scene, load_scene
 from vibro_sweep.scene.scene import parse_scene
-from vibro_sweep.store.attributes import text
-from vibro_sweep.store.opening import opened
 
 
 def presets_of(paths: Iterable[Path]) -> dict[str, Scene]:
@@ -28,8 +27,8 @@ def scene_to_explore(path: Path) -> Scene:
         if not isinstance(scene, Scene):
             raise ArgumentError(f"{path} follows branches; explore takes the scene of a sweep")
     else:
-        with opened(path, names=(), content=False) as (file, _):
-            attributes = {name: text(file, name) for name in ("kind", "type", "scene") if name in file.attrs}
+        with open_file(path) as data:
+            attributes = {name: str(data.attrs[name]) for name in ("kind", "type", "scene") if name in data.attrs}
         return scene_of_results(attributes, str(path))
     return described_sweep(scene, str(path))
 

@@ -10,9 +10,9 @@ from vibro_sweep.driver.sweep import run_sweep
 from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.plotting import figure
 from vibro_sweep.plotting.pictures import save
+from vibro_sweep.results.layout import size
 from vibro_sweep.scene import Scene
 from vibro_sweep.scene.written import data_of
-from vibro_sweep.store import size
 
 LARGEST = 64 * 10**6  # bytes of a file that goes to the page
 

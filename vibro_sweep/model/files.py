@@ -9,7 +9,7 @@ from vibro_sweep.model.arguments import check_type
 from vibro_sweep.model.errors import ArgumentError, VibroSweepError
 from vibro_sweep.model.refusals import not_allowed
 
-SUFFIX = ".part"  # of the file of a run that is not complete
+SUFFIX = ".pieces"  # of the folder of a run that is not complete
 WHAT = "the path of a file"
 
 

@@ -6,6 +6,7 @@ Such a picture is drawn anew without a question. Everything else that exists is 
 import contextlib
 import hashlib
 import io
+import os
 import re
 import secrets
 import zlib
@@ -15,11 +16,12 @@ from pathlib import Path
 import matplotlib
 from matplotlib.figure import Figure
 
+from vibro_sweep.files import disk
+from vibro_sweep.files.opening import open_raw
 from vibro_sweep.plotting.film import SUFFIXES as FILMS
 from vibro_sweep.plotting.film import Film
 from vibro_sweep.plotting.style import STYLE
 from vibro_sweep.plotting.sweep_result import PlotError
-from vibro_sweep.store import names, parts
 
 MOST = 2**28  # bytes of a picture that is looked at
 
@@ -32,7 +34,7 @@ def save(fig: Figure, output: Path, overwrite: bool, inputs: Collection[Path]) -
 
     inputs : files from which it was drawn; none of them is replaced, by whatever name or link
     """
-    old = _replaceable(output, overwrite, inputs)
+    exists = _replaceable(output, overwrite, inputs)
     suffix = output.suffix.lower()
     with matplotlib.rc_context(STYLE):  # some settings are looked up only when the picture is written
         picture = _encoded(fig, suffix)
@@ -40,7 +42,7 @@ def save(fig: Figure, output: Path, overwrite: bool, inputs: Collection[Path]) -
     try:
         with open(new, "xb") as file:
             file.write(_sealed(picture, suffix))
-        names.publish(new, output, old)
+        disk.publish(new, output, replaces=exists)
     except FileExistsError:
         raise PlotError(f"output {output}: it has just appeared; --overwrite replaces it") from None
     except OSError as error:
@@ -64,21 +66,22 @@ def check_output(output: Path, overwrite: bool, inputs: Collection[Path]) -> Non
     _replaceable(output, overwrite, inputs)
 
 
-def _replaceable(output: Path, overwrite: bool, inputs: Collection[Path]) -> names.Stamp | None:
+def _replaceable(output: Path, overwrite: bool, inputs: Collection[Path]) -> bool:
+    """Whether something stands there, which may be replaced. Raises PlotError where that may not be."""
     for source in inputs:
-        if names.same_file(output, source):
+        if disk.same_file(output, source):
             raise PlotError(f"output {output}: that is {source}, which is read for it; name another file")
-    if why := names.obstacle(output):
+    if why := disk.obstacle(output):
         raise PlotError(f"output {output} {why}")
-    found = names.stamp(output)
-    if found and not overwrite and not unchanged(output):
+    exists = os.path.lexists(output)
+    if exists and not overwrite and not unchanged(output):
         raise PlotError(f"output {output} exists, and is not a picture that vibro-sweep drew; --overwrite replaces it")
-    return found
+    return exists
 
 
 def unchanged(path: Path) -> bool:
     """Whether this is a picture by `save`, byte for byte."""
-    with parts.open_regular(path) as file:
+    with open_raw(path) as file:
         content = file.read(MOST)
     suffix = path.suffix.lower()
     for digest in _DIGEST.findall(content)[-1:]:

@@ -5,11 +5,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vibro_sweep.files.file_errors import StoreError
+from vibro_sweep.files.reading import open_whole
 from vibro_sweep.model.refusals import cut
 from vibro_sweep.plotting.source import PlotError, name_of, readable
-from vibro_sweep.store.attributes import attributes, quantities_of, text, texts
-from vibro_sweep.store.opening import StoreError, opened
-from vibro_sweep.store.ragged_checks import Stored, check
+from vibro_sweep.results.ragged_dataset import check
 from vibro_sweep.tables.bifurcations import KINDS, TYPES
 from vibro_sweep.tables.file_columns import BRANCHES, WINDOWS
 from vibro_sweep.tables.units import shown_unit
@@ -30,33 +30,18 @@ class RaggedFile:
         self.name = name_of(given)
         if found != kind and not (kind == BRANCHES and found == WINDOWS):  # which are stable parts of branches
             raise PlotError(f"{self.name}: holds no {kind}")
-        if isinstance(given, (str, Path)):
-            self._read(Path(given))
-        else:
-            self._take(given, str(found))
-
-    def _read(self, path: Path) -> None:
         try:
-            with opened(path) as (file, _):
-                self.arrays = {name: file[name][()] for name in quantities_of(file)}
-                self._units = {name: attributes(file[name]).get("units") for name in self.arrays}
-                self.parameters = texts(file, "parameters")
-                self.title = text(file, "title").removeprefix("vibro_sweep: ")
-                self.sweep = text(file, "sweep") if "sweep" in file.attrs else ""
+            data = open_whole(Path(given)) if isinstance(given, (str, Path)) else given
+            check(data)
+            self.arrays = {str(name): one.values for name, one in data.variables.items()}
         except StoreError as error:
             raise PlotError(str(error)) from error
-
-    def _take(self, data: "xarray.Dataset", kind: str) -> None:
+        except (OSError, RuntimeError, ValueError) as error:
+            raise PlotError(f"{self.name} does not hold all that {found} are: {error}") from error
+        self._units = {name: data[name].attrs.get("units") for name in self.arrays}
         self.parameters = [str(name) for name in np.atleast_1d(data.attrs.get("parameters", []))]
         self.title = str(data.attrs.get("title", "")).removeprefix("vibro_sweep: ")
         self.sweep = str(data.attrs.get("sweep", ""))
-        try:
-            found = {str(name): Stored(one.dims, one.values) for name, one in data.variables.items()}
-            check(kind, self.parameters, found)
-        except (OSError, RuntimeError, ValueError) as error:
-            raise PlotError(f"{self.name} does not hold all that {kind} are: {error}") from error
-        self.arrays = {name: one.values for name, one in found.items()}
-        self._units = {name: data[name].attrs.get("units") for name in self.arrays}
 
     def __getitem__(self, name: str) -> np.ndarray:
         return self.arrays[name]

@@ -1,25 +1,14 @@
 """The numbers of a run as its file holds them."""
 
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from vibro_sweep.results.sweep_dataset import Sweep
 from vibro_sweep.tables.outcomes import VALID, status_of
 from vibro_sweep.tables.parameters import FOLLOWING
 
 Along = dict[str, tuple[tuple[str, ...], np.ndarray]]  # name -> the keys that a number depends on, its values
-
-
-class Source(Protocol):
-    """A file, or a Dataset in memory: what it says of itself and of its variables."""
-
-    sweep: list[str]
-    attributes: dict[str, Any]
-
-    def attribute(self, name: str, key: str) -> Any: ...
-    def dimensions(self, name: str) -> tuple[str, ...]: ...
-    def read(self, name: str) -> np.ndarray: ...
-    def __contains__(self, name: str) -> bool: ...
 
 
 class Settings(NamedTuple):
@@ -36,18 +25,19 @@ class Settings(NamedTuple):
     valid: list[int]
 
 
-def settings_of(source: Source) -> Settings:
+def settings_of(source: Sweep) -> Settings:
     """The settings of a run as a file, or a Dataset of one, states them."""
     along = {
-        name: (source.dimensions(name), source.read(name))
+        name: (source.dims(name), source.values(name))
         for name in FOLLOWING
-        if name in source and name not in source.sweep
+        if name in source and name not in source.keys
     }
     significant = source.attribute("lyapunov_error", "significant") if "lyapunov_error" in source else None
-    return Settings(source.attributes, along, np.nan if significant is None else float(significant), _valid(source))
+    held = {str(name): one.item() for name, one in source.data.coords.items() if one.ndim == 0}
+    return Settings(source.attrs | held, along, np.nan if significant is None else float(significant), _valid(source))
 
 
-def _valid(source: Source) -> list[int]:
+def _valid(source: Sweep) -> list[int]:
     meanings = source.attribute("status", "flag_meanings")
     if meanings is None:
         return [0]

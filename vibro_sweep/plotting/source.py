@@ -1,14 +1,16 @@
 """Where a picture takes its numbers from: an HDF5 file, read in pieces, or an `xarray.Dataset` in memory."""
 
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-import numpy as np
-
+from vibro_sweep.files.file_errors import StoreError
+from vibro_sweep.files.opening import open_file
+from vibro_sweep.files.reading import sweep_in
 from vibro_sweep.model.errors import ArgumentTypeError, VibroSweepError
 from vibro_sweep.model.refusals import not_allowed
-from vibro_sweep.store.attributes import is_flat, quantities_of, text, texts
-from vibro_sweep.store.opening import ForeignError, StoreError, is_dataset, open_file, opened
+from vibro_sweep.results.sweep_dataset import Sweep
 from vibro_sweep.tables.file_columns import SWEEP
 
 if TYPE_CHECKING:
@@ -32,29 +34,16 @@ class PlotError(VibroSweepError, ValueError):
 
 
 def readable(given: "str | Path | xarray.Dataset") -> tuple["str | Path | xarray.Dataset", str | None]:
-    """What is read, and what it holds where that is branches, curves or windows. Raises PlotError.
-
-    A file that another program wrote from one of ours is read as a Dataset.
-    """
-    if not isinstance(given, (str, Path)):
+    """What is read, and what it holds where that is branches, curves or windows. Raises PlotError."""
+    if isinstance(given, (str, Path)):
+        try:
+            with open_file(Path(given)) as data:
+                kind = data.attrs["kind"]
+        except StoreError as error:
+            raise PlotError(str(error)) from error
+    else:
         kind = getattr(given, "attrs", {}).get("kind")
-        return given, None if kind in (None, SWEEP) else str(kind)
-    try:
-        with opened(Path(given), (), content=False) as (file, _):
-            return given, text(file, "kind") if is_flat(file) else None
-    except ForeignError as found:
-        return readable(_dataset_of(found))
-    except StoreError as error:
-        raise PlotError(str(error)) from error
-
-
-def _dataset_of(found: ForeignError) -> "xarray.Dataset":
-    from vibro_sweep.store import foreign  # xarray takes long to be imported
-
-    try:
-        return foreign.dataset_of(found)
-    except StoreError as error:
-        raise PlotError(str(error)) from error
+    return given, None if kind in (None, SWEEP) else str(kind)
 
 
 def name_of(given: "str | Path | xarray.Dataset") -> str:
@@ -64,111 +53,19 @@ def name_of(given: "str | Path | xarray.Dataset") -> str:
     return getattr(given, "encoding", {}).get("source", "this dataset")
 
 
-class FileSource:
-    """A file of a run, or the part of one that is not complete. Raises StoreError where there is none."""
-
-    def __init__(self, path: str | Path):
-        self.name = str(path)
-        self._file = open_file(Path(path)).file
-
-    def close(self) -> None:
-        self._file.close()
-
-    @property
-    def sweep(self) -> list[str]:
-        """Names of the sweep's dimensions, in order."""
-        return texts(self._file, "sweep_dimensions")
-
-    @property
-    def quantities(self) -> list[str]:
-        return quantities_of(self._file)
-
-    @property
-    def attributes(self) -> dict[str, Any]:
-        """The attributes of the file, texts as `str`."""
-        return {key: _decoded(value) for key, value in self._file.attrs.items()}
-
-    def attribute(self, name: str, key: str) -> Any:
-        """An attribute of a dataset; None where it has no such."""
-        return _decoded(self._file[name].attrs.get(key))
-
-    def __contains__(self, name: str) -> bool:
-        return is_dataset(self._file, name)
-
-    def dimensions(self, name: str) -> tuple[str, ...]:
-        return tuple(one[0].name.rpartition("/")[2] for one in self._file[name].dims)
-
-    def number_of_dimensions(self, name: str) -> int:
-        return self._file[name].ndim
-
-    def read(self, name: str, index=()) -> np.ndarray:
-        try:
-            return self._file[name][index]
-        except OSError as error:  # h5py's word for what it cannot read back
-            raise PlotError(f"{self.name}: `{name}` cannot be read, it is damaged or being written") from error
-
-
-class DatasetSource:
-    """What `vibro_sweep.open` or `vibro_sweep.sweep` returned, or a part of it that `sel` and the like have cut out."""
-
-    def __init__(self, data: "xarray.Dataset"):
-        if not hasattr(data, "data_vars"):
-            raise ArgumentTypeError(not_allowed("data", data, "the path of a file, or a Dataset"))
-        if "status" not in data or "sweep_dimensions" not in data.attrs:
-            raise PlotError("this dataset is not from `vibro_sweep.open` or `vibro_sweep.sweep`: it has no status")
-        self._data, self.name = data, name_of(data)
-
-    def close(self) -> None:
-        """Do nothing: it stays open for its owner."""
-
-    @property
-    def sweep(self) -> list[str]:
-        return [name for name in np.atleast_1d(self._data.attrs["sweep_dimensions"]) if name in self._data.dims]
-
-    @property
-    def quantities(self) -> list[str]:
-        return [str(name) for name in self._data.data_vars]
-
-    @property
-    def attributes(self) -> dict[str, Any]:
-        chosen = {name: one.item() for name, one in self._data.coords.items() if one.ndim == 0}
-        return dict(self._data.attrs) | chosen
-
-    def attribute(self, name: str, key: str) -> Any:
-        return self._data[name].attrs.get(key)
-
-    def __contains__(self, name: str) -> bool:
-        return name in self._data.variables and not (name in self._data.coords and self._data[name].ndim == 0)
-
-    def dimensions(self, name: str) -> tuple[str, ...]:
-        return self._in_order(name).dims
-
-    def number_of_dimensions(self, name: str) -> int:
-        return self._data[name].ndim
-
-    def read(self, name: str, index=()) -> np.ndarray:
-        try:
-            return np.asarray(self._in_order(name).values[index])
-        except (OSError, RuntimeError) as error:  # of a file that it reads from
-            raise PlotError(f"{self.name}: `{name}` cannot be read, it is damaged or closed") from error
-
-    def _in_order(self, name: str):
-        """The dimensions as files have them."""
-        lead = [one for one in (*self.sweep, "start") if one in self._data[name].dims]
-        return self._data[name].variable.transpose(*lead, ...)
-
-
-def source_of(given) -> FileSource | DatasetSource:
-    """A path or a Dataset. Raises PlotError where it is missing or no result."""
+@contextmanager
+def sweep_read(given: "str | Path | xarray.Dataset") -> Iterator[Sweep]:
+    """The sweep of a file or of a Dataset. Raises PlotError where it is missing or no result."""
     if not isinstance(given, (str, Path)):
-        return DatasetSource(given)
-    try:
-        return FileSource(given)
-    except ForeignError as found:
-        return DatasetSource(_dataset_of(found))
-    except StoreError as error:
-        raise PlotError(str(error)) from error
-
-
-def _decoded(value):
-    return value.decode() if isinstance(value, bytes) else value
+        if not hasattr(given, "data_vars"):
+            raise ArgumentTypeError(not_allowed("data", given, "the path of a file, or a Dataset"))
+        if "status" not in given or "sweep_dimensions" not in given.attrs:
+            raise PlotError("this dataset is not from `vibro_sweep.open` or `vibro_sweep.sweep`: it has no status")
+    with ExitStack() as stack:
+        try:
+            found = stack.enter_context(sweep_in(given, computes=False))
+        except StoreError as error:
+            raise PlotError(str(error)) from error
+        if "status" not in found:
+            raise PlotError(f"{found.name} is not from `vibro_sweep.open` or `vibro_sweep.sweep`: it has no status")
+        yield found

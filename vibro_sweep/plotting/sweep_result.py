@@ -6,6 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from vibro_sweep.files.file_errors import StoreError
 from vibro_sweep.model.catalogue import OF_A_SYSTEM
 from vibro_sweep.model.real import number_of
 from vibro_sweep.model.refusals import not_allowed, shown
@@ -13,7 +14,7 @@ from vibro_sweep.model.stops import NUMBERS, compliance_of
 from vibro_sweep.plotting.panel import Panel
 from vibro_sweep.plotting.plot_options import PlotOptions
 from vibro_sweep.plotting.settings import settings_of
-from vibro_sweep.plotting.source import PlotError, source_of
+from vibro_sweep.plotting.source import PlotError, sweep_read
 from vibro_sweep.plotting.style import axis_name, equation, in_formula
 from vibro_sweep.tables.coordinates import MOST_MASSES
 from vibro_sweep.tables.exponents import CERTAIN, sign_of
@@ -46,28 +47,29 @@ class Result:
 
     def __init__(self, given, options: PlotOptions | None = None, ax: Axes | None = None):
         self.options, self.ax = options or PlotOptions(), ax
-        self._source = source_of(given)
+        self._open = sweep_read(given)
+        self._source = self._open.__enter__()
         self.path = self._source.name
         try:
             self._read_frame()
             self._chosen = self._nearest(self.options.at)
         except BaseException as error:
-            self._source.close()
+            self._open.__exit__(None, None, None)
             if isinstance(error, (KeyError, TypeError, ValueError)) and not isinstance(error, PlotError):
                 raise PlotError(f"{self.path} is damaged ({error})") from error
             raise
 
     def _read_frame(self):
-        names = self._source.sweep
+        names = self._source.keys
         self.sweep = {name: self.coordinate(name).astype(float) for name in names}
         for name, values in self.sweep.items():
             if not np.isfinite(values).all():
                 raise PlotError(f"{self.path} is damaged: the axis {name} has values that are not numbers")
-        self._one_start = self._source.number_of_dimensions("status") == len(names)
+        self._one_start = self._source.values("status").ndim == len(names)
         starts = [""] if self._one_start else self.coordinate("start")
-        self.starts = [start.decode() if isinstance(start, bytes) else str(start) for start in starts]
+        self.starts = [str(start) for start in starts]
         self.follow = self.starts == ["up", "down"]
-        codes = self._with_start(self._source.read("status"))
+        codes = self._with_start(self._source.values("status"))
         self.done = codes != NOT_COMPUTED
         try:
             self.settings, self._along, self.significant, valid = settings_of(self._source)
@@ -92,14 +94,14 @@ class Result:
         return self
 
     def __exit__(self, kind, error, trace):
-        self._source.close()
+        self._open.__exit__(None, None, None)
 
     def __contains__(self, name) -> bool:
         return name in self._source
 
     def contents(self) -> str:
         """The names of the stored quantities, for a message."""
-        return ", ".join(sorted(self._source.quantities))
+        return ", ".join(sorted(self._source.names))
 
     def unit(self, name) -> str:
         """The unit of a quantity, for the name of an axis; of the gap along a trajectory that of the states."""
@@ -120,14 +122,14 @@ class Result:
 
     def coordinate(self, name) -> np.ndarray:
         """Values of a dimension."""
-        return self._source.read(name)
+        return self._read(name)
 
     def array(self, name, column: int | None = None) -> np.ndarray:
         """A quantity as floats, shape (*sweep, starts, its own dimensions); NaN where not computed or failed.
 
         column : of its last dimension, which it has no more; the others are not read
         """
-        stored = self._with_start(self._source.read(name, () if column is None else (..., column)))
+        stored = self._with_start(self._read(name, () if column is None else (..., column)))
         values = stored.astype(float)
         if not self.done.all():
             values[~self.done] = np.nan
@@ -137,7 +139,15 @@ class Result:
 
     def one(self, name, point: Point) -> np.ndarray:
         """A quantity at one point, shape (its own dimensions); reads no other point."""
-        return self._source.read(name, point.index[:-1] if self._one_start else point.index)
+        return self._read(name, point.index[:-1] if self._one_start else point.index)
+
+    def _read(self, name, index=()) -> np.ndarray:
+        try:
+            return self._source.values(name, index=index)
+        except StoreError as error:
+            raise PlotError(str(error)) from error
+        except (OSError, RuntimeError) as error:
+            raise PlotError(f"{self.path}: `{name}` cannot be read, it is damaged or closed") from error
 
     def _with_start(self, values) -> np.ndarray:
         return np.expand_dims(values, len(self.sweep)) if self._one_start else values

@@ -1,5 +1,6 @@
 """How large a scene may be: points, numbers in the file, and what must be in memory at once for one orbit."""
 
+import math
 from typing import TYPE_CHECKING
 
 from vibro_sweep.tables.observables import WITH_STATES, of_an_impact
@@ -11,6 +12,7 @@ if TYPE_CHECKING:
 
 MAX_POINTS = 10**9
 MAX_NUMBERS = 10**11  # doubles in the file, about a terabyte
+MAX_TOGETHER = 5 * 10**6  # orbits among which attractors are sought
 MAX_AT_ONCE = 5 * 10**7  # doubles in memory that cannot be split: 400 MB
 
 FIXED = 300  # of an orbit of two masses, whatever is observed
@@ -78,6 +80,10 @@ def size_problems(scene: "Scene") -> list[str]:
         size = " x ".join(str(length) for length in scene.shape)
         text = f"{size} = {scene.n_points:.6g} points; at most {MAX_POINTS:.0e} are allowed"
         return [problem("sweep", list(scene.sweep), text)]
+    together = scene.n_points // math.prod(len(scene.sweep[key]) for key in scene.sweep if not key.startswith("start_"))
+    if "attractors" in scene.observe and together > MAX_TOGETHER:
+        text = f"attractors are sought among {together:,} orbits of one system; at most {MAX_TOGETHER:,} are allowed"
+        return [problem("observe", sorted(scene.observe), text)]
     numbers = scene.n_points * written_numbers(scene)
     if numbers > MAX_NUMBERS:
         text = f"the file would hold {numbers:.6g} numbers; at most {MAX_NUMBERS:.0e} are allowed"

@@ -1,6 +1,8 @@
 """A disk that is full, or takes no more, and an output that is removed during the run."""
 
 import contextlib
+import errno
+import itertools
 import os
 import resource
 import shutil
@@ -9,7 +11,7 @@ import subprocess
 import pytest
 from support import slow_cases
 from support.contents import arrays_of, assert_same_bits, described
-from support.faults import TEXT, counted, failing_run
+from support.faults import BLOCK, TEXT, counted, failing_run
 from support.programs import main
 from support.scene_texts import parsed
 
@@ -37,39 +39,22 @@ def fill(folder):
 
 def test_a_disk_too_small_is_said_before_anything_is_computed(small_disk, path):
     scene = parsed(TEXT.replace("num: 400", "num: 4000"))
-    with pytest.raises(vs.StoreError, match=r"out.h5.part needs \d+ MB, and only 3 MB are free in"):
+    with pytest.raises(vs.StoreError, match=r"out.h5 needs \d+ MB, and only 3 MB are free in"):
         vs.run(scene, path, progress=lambda *_: pytest.fail("a run that cannot end was begun"))
     assert os.listdir(path.parent) == []
 
 
-def test_disk_full_in_mid_run(small_disk, scene, path, whole):
-    message, seen = failing_run(scene, path, "No space left on device; make room", fault=lambda: fill(path.parent))
-    assert "`resume` continues it" in message
-    failing_run(scene, path, "No space left on device", after=-1, mode="resume")  # still full
-    (path.parent / "other").unlink()
-    done, missing, failed = counted(described(f"{path}.part"))
-    assert 0 < seen[3] <= done < 400 and missing == 400 - done and failed == 0
-    vs.run(scene, path, mode="resume")
-    assert_same_bits(arrays_of(path), whole)
-    assert os.listdir(path.parent) == [path.name]
+def test_a_disk_that_others_fill_during_the_run(small_disk, scene, path, whole):
+    """The room for all blocks was taken at the beginning."""
+    seen = []
 
-
-@pytest.mark.parametrize("room", [80_000, *slow_cases(0, 400_000)])
-def test_disk_full_while_the_file_is_made(small_disk, scene, path, whole, capfd, room):
-    """After the last block: HDF5 would say that all is well."""
-
-    def fill_up(done, total):
-        if done == total:
+    def progress(done, _):
+        seen.append(done)
+        if len(seen) == 3:
             fill(path.parent)
-            os.truncate(path.parent / "other", max(0, os.path.getsize(path.parent / "other") - room))
 
-    with pytest.raises(vs.StoreError, match="No space left on device; make room"):
-        vs.run(scene, path, progress=fill_up)
-    assert sorted(os.listdir(path.parent)) == ["other", "out.h5.part"]
-    (path.parent / "other").unlink()
-    vs.run(scene, path, mode="resume")
+    vs.run(scene, path, workers=1, progress=progress, block=BLOCK)
     assert_same_bits(arrays_of(path), whole)
-    assert capfd.readouterr().err == ""
 
 
 @contextlib.contextmanager
@@ -84,11 +69,28 @@ def file_size_limit(size):
 
 @pytest.mark.parametrize("size", [1_000, *slow_cases(30_000, 300_000, 800_000)])
 def test_a_disk_that_takes_no_more(scene, path, whole, size):
-    """At every stage: while the part is made, and in its blocks."""
+    """When the file is made: nothing is computed, and nothing is left."""
     with file_size_limit(size):
         failing_run(scene, path, "File too large; make room|unable to|too large", after=-1)
-    if size > 300_000:
-        assert 0 < counted(described(f"{path}.part"))[0] < 400
+    assert os.listdir(path.parent) == []
+    vs.run(scene, path, mode="resume")
+    assert_same_bits(arrays_of(path), whole)
+
+
+def test_a_write_that_fails(scene, path, whole, monkeypatch):
+    """As on file systems that copy what is written: what is on the disk is kept."""
+    written, count = os.pwrite, itertools.count()
+
+    def pwrite(*arguments):
+        if next(count) > 100:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        return written(*arguments)
+
+    with monkeypatch.context() as patch:
+        patch.setattr("vibro_sweep.files.sweep_file.SECONDS", 0.0)
+        patch.setattr(os, "pwrite", pwrite)
+        message, _ = failing_run(scene, path, "No space left on device; make room", after=-1)
+    assert "`resume` continues it" in message and 0 < counted(described(path))[0] < 400
     vs.run(scene, path, mode="resume")
     assert_same_bits(arrays_of(path), whole)
     assert os.listdir(path.parent) == [path.name]
@@ -99,31 +101,13 @@ def test_disk_full_by_the_command_line(scene, path, tmp_path, capsys):
     command = ["run", str(tmp_path / "the_scene.yaml"), "-o", str(path), "--workers", "1"]
     with file_size_limit(800_000):
         assert main(command) == 2
-    assert capsys.readouterr().err == (
-        f"vibro-sweep: error: {path}.part: File too large; make room; "
-        "what was computed until then is kept: --resume continues it\n"
-    )
+    told = capsys.readouterr().err
+    assert told.startswith(f"vibro-sweep: error: {path}: ") and "the file is not made" in told
     assert main([*command, "--resume"]) == 0
 
 
-def test_output_folder_removed(scene, path, whole):
-    message, seen = failing_run(scene, path, "was removed during the run", fault=lambda: shutil.rmtree(path.parent))
-    assert "it is there again, with all that was computed" in message
-    assert counted(described(f"{path}.part"))[0] == seen[-1] > 0
-    vs.run(scene, path, mode="resume")
-    assert_same_bits(arrays_of(path), whole)
-
-
-def test_part_removed(scene, path, whole):
-    _, seen = failing_run(scene, path, "was removed", fault=lambda: os.unlink(f"{path}.part"))
-    assert counted(described(f"{path}.part"))[0] == seen[-1] > 0
-    vs.run(scene, path, mode="resume")
-    assert_same_bits(arrays_of(path), whole)
-
-
-def test_output_folder_removed_for_good(scene, path, tmp_path):
-    def remove():
-        shutil.rmtree(path.parent)
-        path.parent.write_text("in its place")
-
-    failing_run(scene, path, "was removed during the run, and cannot be put back", fault=remove)
+@pytest.mark.parametrize("remove", [lambda path: shutil.rmtree(path.parent), lambda path: path.unlink()])
+def test_what_is_removed_during_the_run(scene, path, monkeypatch, remove):
+    monkeypatch.setattr("vibro_sweep.files.sweep_file.SECONDS", 0.0)
+    failing_run(scene, path, "was removed, or replaced, during the run", fault=lambda: remove(path))
+    assert not path.exists()

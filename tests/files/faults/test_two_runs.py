@@ -6,6 +6,7 @@ import sys
 
 import numpy as np
 import pytest
+import xarray
 from support import slow_cases
 from support.contents import described
 from support.faults import BLOCK, TEXT, counted
@@ -29,28 +30,32 @@ def test_two_runs_on_one_file(scene, path, tmp_path, option):
                 check=False,
                 env=os.environ | {"HDF5_USE_FILE_LOCKING": "FALSE"},
             )
-            messages.append((second.returncode, second.stderr, counted(described(f"{path}.part"))))
+            messages.append((second.returncode, second.stderr, counted(described(path))))
 
     vs.run(scene, path, progress=begin_another)
-    assert messages == [(2, f"vibro-sweep: error: {path}.part is being written by another run\n", (0, 400, 0))]
+    assert messages == [(2, f"vibro-sweep: error: {path} is being written by another run\n", (0, 400, 0))]
     assert counted(described(path)) == (400, 0, 0)
 
 
-def test_readers_of_a_running_run(scene, path):
-    """They see what is computed, whole blocks only, and write nothing."""
-    part, read = path.with_name(path.name + ".part"), []
+def test_readers_of_a_running_run(scene, path, monkeypatch):
+    """They see what is computed, and write nothing."""
+    monkeypatch.setattr("vibro_sweep.files.sweep_file.SECONDS", 0.0)  # each block is committed at once
+    read = []
 
     def look(done, _):
         if done == BLOCK:
-            data = vs.open(part)
-            read.extend([data, part.read_bytes(), part.stat().st_mtime_ns])
-            assert computed(data) == BLOCK and vs.plot(part).axes
+            before = path.read_bytes()
+            data = vs.open(path)
+            read.append(data)
+            assert computed(data) == BLOCK and vs.plot(path).axes
             assert np.all(np.isnan(data["x1"][BLOCK:])) and np.all(data["status"][BLOCK:] == -1)
-            assert part.read_bytes() == read[1] and part.stat().st_mtime_ns == read[2]
+            with xarray.open_dataset(path) as plain:
+                assert computed(plain) == BLOCK and next(iter(plain.data_vars)) == "status"
+            assert path.read_bytes() == before
         elif done == 2 * BLOCK:
             assert computed(read[0]) == BLOCK  # as it was when it was opened
-            assert counted(described(part))[0] == 2 * BLOCK
-            assert part.read_bytes()[: len(read[1])] == read[1] and os.listdir(path.parent) == [part.name]
+            assert counted(described(path))[0] == 2 * BLOCK
+            assert sorted(os.listdir(path.parent)) == [path.name, f"{path.name}.lock"]
             read[0].close()
             read.append("to the end")
 

@@ -1,9 +1,9 @@
 """The orbits of a sweep, row by row: a row is all points along the number that is followed, other keys held."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from vibro_sweep.model.built import BUILD
 from vibro_sweep.model.checked_numbers import range_of
 from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.refusals import cut
+from vibro_sweep.results.sweep_dataset import Sweep
 from vibro_sweep.tables.coordinates import state
 from vibro_sweep.tables.file_columns import SWEEP
 from vibro_sweep.tables.outcomes import NOT_COMPUTED, REASONS, codes, is_valid
@@ -19,20 +20,6 @@ from vibro_sweep.tables.outcomes import NOT_COMPUTED, REASONS, codes, is_valid
 BEYOND = 1.0  # of the sweep's length: so far beyond its ends windows are followed
 BEFORE = 0.25  # of the way from where a number must not be: there a frequency's period is infinite
 REASON_CODES = codes(REASONS)
-
-
-class Contents(Protocol):
-    """The results of a sweep (store/arrays.py, driver/swept.py)."""
-
-    attrs: dict[str, Any]
-    chosen: dict[str, float]
-    sizes: dict[str, int]
-
-    def __contains__(self, name: str) -> bool: ...
-
-    def dims(self, name: str) -> list[str]: ...
-
-    def values(self, name: str, first: Sequence[str] = ()) -> np.ndarray: ...
 
 
 @dataclass(frozen=True)
@@ -75,14 +62,9 @@ class Row:
         return lo, min(hi, allowed.get("maximum", np.inf))
 
 
-def swept_in(data: Contents) -> list[str]:
-    """The keys of a sweep, in the order of its file."""
-    return [str(name) for name in np.atleast_1d(data.attrs["sweep_dimensions"])]
-
-
-def chosen_key(data: Contents, system, parameter: str | None) -> str:
+def chosen_key(data: Sweep, system, parameter: str | None) -> str:
     """The swept number along which windows are followed, by default the first. Raises ValueError."""
-    swept = swept_in(data)
+    swept = data.keys
     able = [name for name in swept if name in system.described and data.sizes[name] > 1]
     if not able:
         given = ", ".join(f"{name} of {data.sizes[name]}" for name in swept) or "nothing"
@@ -90,7 +72,7 @@ def chosen_key(data: Contents, system, parameter: str | None) -> str:
     return checked_word("parameter", parameter, able, optional=True) or able[0]
 
 
-def check_data(data: Contents) -> None:
+def check_data(data: Sweep) -> None:
     """Raise ValueError for what is not a sweep, or has no section states at t = 0 mod T of the oscillator itself."""
     if data.attrs.get("kind", SWEEP) != SWEEP:
         raise ArgumentError(f"holds {cut(str(data.attrs['kind']))}, not a sweep")
@@ -104,9 +86,9 @@ def check_data(data: Contents) -> None:
         raise ArgumentError("observe: has no 'section'; windows start from the section states of a sweep")
 
 
-def rows_of(data: Contents, system, key: str) -> Iterator[Row]:
+def rows_of(data: Sweep, system, key: str) -> Iterator[Row]:
     """The rows of a sweep of `system` along `key`, in the order of the file."""
-    swept = swept_in(data)
+    swept = data.keys
     others = [name for name in swept if name != key]
     lead = [*others, key, *(["start"] if "start" in data.dims("period") else [])]
     last = [data.values(name, lead)[..., -1] for name in state(system.masses)]

@@ -106,7 +106,7 @@ class Windows(FileResult, list[Window]):
     unvisited: list[Unvisited]
     window: np.ndarray
     reason: np.ndarray
-    _contents_of_file: Callable[[], Any]  # (driver/saved_results.py)
+    _dataset: Callable[[], Any]  # (driver/saved_results.py)
 
     def __repr__(self) -> str:
         return window_text.of_windows(self)

@@ -1,0 +1,53 @@
+"""A sweep that is computed into memory, as its file would be filled (files/sweep_file.py)."""
+
+import json
+import time
+from typing import Any
+
+import numpy as np
+import xarray
+
+from vibro_sweep.results.boxes import Box
+from vibro_sweep.tables.outcomes import NOT_COMPUTED
+
+
+class InMemory:
+    """The Dataset of a sweep with room for its numbers."""
+
+    def __init__(self, data: xarray.Dataset):
+        self.data = data.copy(data={name: np.array(one.values) for name, one in data.data_vars.items()})
+        lists = {name: value for name, value in data.attrs.items() if isinstance(value, list) and len(value) == 1}
+        self.data.attrs |= {name: value for name, (value,) in lists.items()}  # as xarray reads them
+        self._began = time.perf_counter()
+
+    @property
+    def status(self) -> np.ndarray:
+        """The statuses of all points."""
+        return self.data["status"].values
+
+    def missing(self, box: Box) -> bool:
+        """Whether an orbit in a box of the sweep is not computed yet."""
+        return bool((self.status[box] == NOT_COMPUTED).any())
+
+    def done(self) -> int:
+        """Orbits computed so far."""
+        return int(np.count_nonzero(self.status != NOT_COMPUTED))
+
+    def write(self, box: Box, arrays: dict[str, np.ndarray]) -> None:
+        """Keep a block."""
+        for name, one in self.data.data_vars.items():
+            one.values[box] = arrays[str(name)]
+
+    def read(self, name: str) -> np.ndarray:
+        """All numbers of a variable."""
+        return self.data[name].values
+
+    def finish(self, following: dict[str, np.ndarray], about: dict[str, Any]) -> float:
+        """Keep what follows from all points, and how the run went. Returns its seconds."""
+        for name, values in following.items():
+            self.data[name].values[...] = values
+        seconds = round(time.perf_counter() - self._began, 3)
+        self.data.attrs["history"] = "\n".join([self.data.attrs["history"], *about.pop("history")])
+        how = json.loads(self.data.attrs["provenance"]) | about | {"wall_time_s": seconds}
+        self.data.attrs["provenance"] = json.dumps(how)
+        return seconds

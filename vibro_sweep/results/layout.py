@@ -1,0 +1,111 @@
+"""From a scene to the Dataset of its file, with nothing computed: variables, coordinates, attributes, fill values."""
+
+import math
+
+import numpy as np
+import xarray
+
+from vibro_sweep.model.built import stored_names
+from vibro_sweep.model.catalogue import AXES
+from vibro_sweep.results.described import described
+from vibro_sweep.scene import Scene, resolved_numbers
+from vibro_sweep.tables.exponents import RUNNING, periods_read
+from vibro_sweep.tables.file_columns import SWEEP
+from vibro_sweep.tables.observables import DIMENSIONS, SETTLE, TRAJECTORY, asked_for, averaged
+from vibro_sweep.tables.observables import dimensions as dimensions_of
+from vibro_sweep.tables.quantity import Observable, Quantity
+from vibro_sweep.tables.units import unit_in
+
+MATRIX = ("row", "column")  # the dimensions of a matrix
+
+
+def quantities(scene: Scene) -> dict[str, Observable]:
+    """The variables that a scene asks for, `status` first; what it does not observe is not there."""
+    asked = scene.observe | ({TRAJECTORY} if scene.trajectory else set()) | ({SETTLE} if scene.settle else set())
+    system = scene.system
+    found = asked_for(asked, scene.section.kind == "impact", system.masses, not system.gap_is_x1)
+    return {"status": found.pop("status"), **found}
+
+
+def coordinates(scene: Scene) -> dict[str, np.ndarray]:
+    """Every dimension of the scene's file, in order, with its coordinate."""
+    result = dict(scene.sweep)
+    if scene.n_starts > 1:
+        both = scene.start.direction == "both"
+        result["start"] = np.array(["up", "down"]) if both else np.arange(scene.n_starts)
+    used = {dimension for quantity in quantities(scene).values() for dimension in quantity.dimensions}
+    return result | {name: _own_axis(scene, name) for name in DIMENSIONS if name in used}
+
+
+def _own_axis(scene: Scene, name: str) -> np.ndarray:
+    """The coordinate of a dimension that is not a key of the sweep."""
+    trajectory, extent = scene.trajectory, dimensions_of(scene.system.masses)[name].extent
+    if name == "sample":
+        return np.arange(scene.record)
+    if name == "averaged":
+        return np.array(averaged(scene.system.masses))
+    if name == "elapsed":
+        parts = min(RUNNING, scene.record)
+        return np.array([periods_read(m, parts, scene.record) for m in range(parts)])
+    if name == "t_over_T":
+        return np.linspace(0.0, trajectory.periods, trajectory.samples)
+    if name == "trajectory_section":
+        return np.arange(trajectory.periods + 1)
+    if name == "trajectory_impact":
+        return np.arange(trajectory.samples)
+    return np.arange(1, extent + 1)
+
+
+def shape_of(scene: Scene, quantity: Observable, axes: dict[str, np.ndarray]) -> tuple[int, ...]:
+    """The shape of a variable: that of the sweep, then its own."""
+    return (*scene.shape, *(len(axes[name]) for name in quantity.dimensions))
+
+
+def size(scene: Scene) -> int:
+    """Bytes of the scene's file, but for its structure: some kilobytes."""
+    axes = coordinates(scene)
+    lead = math.prod(scene.shape)
+    numbers = [
+        math.prod(shape_of(scene, one, axes)) * np.dtype(one.dtype).itemsize + 4 * lead  # and its checksums
+        for one in quantities(scene).values()
+    ]
+    over = [math.prod(len(scene.sweep[key]) for key in keys) for keys in resolved_numbers.dimensions(scene).values()]
+    return sum(numbers) + 8 * (sum(over) + sum(len(values) for values in axes.values()))
+
+
+def dataset(scene: Scene) -> xarray.Dataset:
+    """The whole Dataset of a scene, with nothing computed: arrays of fill values take no memory, and are not to be
+    written to."""
+    axes, units = coordinates(scene), scene.system.units
+    coords = {}
+    for name, values in axes.items():
+        of = scene.system.described.get(name, AXES.get(name))
+        coords[name] = (name, values, described(of, unit_in(of.units, units)))
+    for name, values in _following(scene).items():
+        of = AXES.get(name) or stored_names(scene.system.masses)[name]
+        keys = resolved_numbers.dimensions(scene)[name]
+        coords[name] = (keys, values, described(of, unit_in(of.units, units)))
+    for name, values in resolved_numbers.matrices(scene).items():
+        option = next(one for one in scene.system.model.options if one.name == name)
+        of = Quantity(name, f"matrix {name}", option.text, units=option.units)
+        coords[name] = (MATRIX, values, described(of, unit_in(of.units, units)))
+    lead = (*scene.sweep, *(["start"] if scene.n_starts > 1 else []))
+    variables = {}
+    for name, quantity in quantities(scene).items():
+        empty = np.broadcast_to(np.array(quantity.fill, quantity.dtype), shape_of(scene, quantity, axes))
+        variables[name] = ((*lead, *quantity.dimensions), empty, described(quantity, unit_in(quantity.units, units)))
+    about = {"kind": SWEEP, "title": f"vibro_sweep: {scene.name}", "scene": scene.text}
+    about |= {"sweep_dimensions": list(scene.sweep)}
+    return xarray.Dataset(variables, coords, about | resolved_numbers.attributes(scene))
+
+
+def _following(scene: Scene) -> dict[str, np.ndarray]:
+    """The numbers that follow from swept ones, over the keys that they depend on."""
+    keys = resolved_numbers.dimensions(scene)
+    shape = tuple(len(scene.sweep[key]) for key in resolved_numbers.depends_on(scene))
+    found = {name: np.empty(shape) for name in keys}
+    for box in resolved_numbers.slabs(scene) if found else ():
+        for name, values in resolved_numbers.following(scene, box).items():
+            if name in found:
+                found[name][box] = values
+    return found

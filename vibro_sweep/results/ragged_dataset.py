@@ -1,0 +1,61 @@
+"""Datasets of branches, curves and windows: ragged arrays, laid out one after another (CF, 9.3.3)."""
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+import numpy as np
+import xarray
+
+from vibro_sweep.model.refusals import cut, shown
+from vibro_sweep.results.described import described
+from vibro_sweep.tables.file_columns import BRANCHES, CHART, OF_EDGES, RAGGED, WINDOWS, columns
+from vibro_sweep.tables.quantity import Quantity
+
+KINDS = (BRANCHES, WINDOWS, CHART)
+
+
+def about(kind: str, title: str, scene: str, attributes: Mapping[str, Any]) -> dict[str, Any]:
+    """The attributes of such a Dataset. scene : the YAML text that was computed; of windows that of the sweep"""
+    return {"kind": kind, "title": f"vibro_sweep: {title}", "scene": scene, "sweep_dimensions": [], **attributes}
+
+
+def dataset(attributes: Mapping[str, Any], of: Iterable[Quantity], arrays: Mapping[str, np.ndarray]) -> xarray.Dataset:
+    """The Dataset of columns, with their arrays by name."""
+    return xarray.Dataset(
+        {one.name: (one.dimensions, np.asarray(arrays[one.name], one.dtype), described(one, one.units)) for one in of},
+        attrs=dict(attributes),
+    )
+
+
+def check(data: xarray.Dataset) -> None:
+    """Raise ValueError for branches, windows or curves that do not hold what such a Dataset must: columns, lengths,
+    indices, codes."""
+    kind = data.attrs.get("kind")
+    if kind not in KINDS:
+        raise ValueError(f"its kind {shown(kind)} is unknown")
+    names = [str(name) for name in np.atleast_1d(data.attrs.get("parameters", []))]
+    lengths = {str(name): size for name, size in data.sizes.items()}
+    for column in (*columns(kind, names, lengths.get("multiplier", 0) // 2), *OF_EDGES):
+        if column.name in data:
+            _check_column(column, data[column.name].variable, lengths)
+        elif column not in OF_EDGES:  # which only curves of a plane have
+            raise ValueError(f"`{cut(column.name)}` is missing")
+    for dimension, counts in RAGGED.items():
+        if dimension in lengths and all(name in data for name in counts):
+            numbers = np.prod([data[name].values.astype(np.int64) for name in counts], axis=0)
+            if np.any(numbers < 0) or numbers.sum() != lengths[dimension]:
+                raise ValueError(f"its variables do not fit together: {', '.join(counts)} and `{dimension}`")
+
+
+def _check_column(column: Quantity, variable: xarray.Variable, lengths: Mapping[str, int]) -> None:
+    if variable.dtype.kind not in "if":
+        raise ValueError(f"`{column.name}` holds no numbers")
+    if variable.dims != column.dimensions:
+        raise ValueError(f"its variables do not fit together: `{column.name}` and its dimensions")
+    limits = column.limits(lengths)
+    if limits is None:
+        return
+    least, most = limits
+    wrong = variable.values[~((variable.values >= least) & (variable.values <= most))]
+    if wrong.size:
+        raise ValueError(f"`{column.name}` has {wrong.flat[0]}; it must be from {least} to {most}")

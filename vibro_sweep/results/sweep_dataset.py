@@ -1,0 +1,82 @@
+"""What is asked of the results of a sweep: its axes, which points are done, numbers and attributes by name."""
+
+import hashlib
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+import xarray
+
+from vibro_sweep.model.built import BUILD
+from vibro_sweep.scene import parse_scene
+from vibro_sweep.tables.file_columns import SWEEP
+
+
+class Sweep:
+    """A Dataset of a sweep: of a file, whose numbers are read when they are asked for, or in memory, or a part that
+    `sel` and the like have cut out.
+
+    name : in messages
+    attrs : attributes, `sweep_dimensions` those that are left
+    keys : names of the sweep's dimensions, in order
+    held : swept numbers of which one value is left
+    """
+
+    def __init__(self, data: xarray.Dataset, name: str, verify: Callable[[str], None] | None = None):
+        self.data, self.name, self._verify = data, name, verify
+        swept = [str(one) for one in np.atleast_1d(data.attrs["sweep_dimensions"])]
+        self.keys = [one for one in swept if one in data.dims]
+        self.held = {one: float(data[one]) for one in swept if one not in data.dims and one in data.coords}
+        self.attrs: dict[str, Any] = {**data.attrs, "sweep_dimensions": self.keys}
+        self._known = {"status": data["status"].values} if "status" in data else {}  # before any other number
+
+    def close(self) -> None:
+        """Close the file, if there is one."""
+        self.data.close()
+
+    @property
+    def names(self) -> list[str]:
+        """The names of what is computed."""
+        return [str(name) for name in self.data.data_vars]
+
+    @property
+    def sizes(self) -> dict[str, int]:
+        """The sizes of all dimensions."""
+        return {str(name): size for name, size in self.data.sizes.items()}
+
+    def __contains__(self, name: str) -> bool:
+        return name in self.data.variables and not (name in self.data.coords and self.data[name].ndim == 0)
+
+    def dims(self, name: str) -> tuple[str, ...]:
+        """Names of the dimensions of a variable, those of the sweep first and in their order."""
+        found = [str(one) for one in self.data[name].dims]
+        lead = [one for one in (*self.keys, "start") if one in found]
+        return (*lead, *(one for one in found if one not in lead))
+
+    def values(self, name: str, first: Sequence[str] = (), index: Any = ()) -> np.ndarray:
+        """The values of a variable, at an index, with these dimensions first, in their order. Raises StoreError."""
+        if name in self._known:
+            variable = xarray.Variable(self.data[name].dims, self._known[name])
+        else:
+            variable = self.data[name].variable
+            if self._verify is not None and name in self.data.data_vars:
+                self._verify(name)
+        return np.asarray(variable.transpose(*(first or self.dims(name)), ...)[index].values)
+
+    def attribute(self, name: str, key: str) -> Any:
+        """An attribute of a variable; None where it has no such."""
+        return self.data[name].attrs.get(key)
+
+    @property
+    def run_id(self) -> str:
+        """The run that computed it; of a part, which has windows of its own, also the values that it has."""
+        known = str(self.data.attrs.get("identity", ""))
+        if self.data.attrs.get("kind", SWEEP) != SWEEP or self.data.attrs.get("type") == BUILD:
+            return known
+        scene = parse_scene(self.data.attrs["scene"])
+        whole = {**scene.sweep, **({"start": range(scene.n_starts)} if scene.n_starts > 1 else {})}
+        coords = {name: np.atleast_1d(self.data[name].values) for name in whole if name in self.data.coords}
+        if all(name in coords and len(coords[name]) == len(axis) for name, axis in whole.items()):
+            return known
+        named = repr([known, *((name, one.tolist()) for name, one in coords.items())])
+        return hashlib.sha256(named.encode()).hexdigest()[:32]
