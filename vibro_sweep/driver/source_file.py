@@ -49,7 +49,7 @@ def swept(data: "str | Path | xarray.Dataset") -> Iterator[Sweep]:
         check_type("data", data, Dataset, "the path of a file, or a Dataset")
         if not {"scene", "sweep_dimensions"} <= data.attrs.keys():
             raise SourceError("data: this dataset is not one of `vibro_sweep.open` or `vibro_sweep.sweep`")
-    name = data if isinstance(data, (str, Path)) else str(data.encoding.get("source", "data"))
+    name = data if isinstance(data, (str, Path)) else "data"
     with computed_from(name), sweep_in(data, computes=True) as found:
         yield found
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from vibro_sweep.analysis.branches.branch_arrays import SHAPES, Arrays
+from vibro_sweep.analysis.single.orbit import simulate
 from vibro_sweep.analysis.windows.job import window_of
 from vibro_sweep.analysis.windows.rows import Row, check_data, chosen_key, rows_of
 from vibro_sweep.analysis.windows.unvisited import unvisited_in
@@ -19,7 +20,7 @@ from vibro_sweep.driver.jobs import computed, workers_of
 from vibro_sweep.driver.joining import columns_in_file, joined
 from vibro_sweep.driver.progress import given_or_bar
 from vibro_sweep.driver.provenance import provenance
-from vibro_sweep.driver.source_file import swept
+from vibro_sweep.driver.source_file import SourceError, swept
 from vibro_sweep.driver.sweep import check_how
 from vibro_sweep.files.pieces import Pieces, pieces_run
 from vibro_sweep.files.subject import Complete
@@ -35,6 +36,8 @@ from vibro_sweep.tables.file_columns import UNVISITED, WINDOWS
 
 if TYPE_CHECKING:
     import xarray
+
+FAR = 1e-2  # of the size of a state: by so much no periodic orbit of a sweep misses where it began
 
 
 def windows(
@@ -151,7 +154,29 @@ def rows_in(data: Sweep, parameter: str | None) -> list[Row]:
     check_data(data)
     system = parse_scene(data.attrs["scene"]).system
     system = system.replace(**{name: value for name, value in data.held.items() if name in system.described})
-    return list(rows_of(data, system, chosen_key(data, system, parameter)))
+    rows = list(rows_of(data, system, chosen_key(data, system, parameter)))
+    for row in rows if data.in_memory else ():
+        _check_orbit(row)
+    return rows
+
+
+def _check_orbit(row: Row) -> None:
+    """Raise ValueError where a periodic orbit of a row does not come back to where it is.
+
+    Attributes of one sweep beside numbers of another, as `xarray.concat` leaves them, would give windows of neither.
+    """
+    places = np.argwhere(row.reason == 0)
+    if not len(places) or row.system.options.get("release") == "force":  # where a state leaves out how stops relax
+        return
+    i, j = places[len(places) // 2]
+    system, begin = row.system_at(row.values[i]), row.states[i, j]
+    end = simulate(system, begin, int(row.period[i, j])).section[-1]
+    size = max(np.abs(row.states[row.reason == 0]).max(), system.numbers.get("b") or 0.0)
+    if np.abs(end - begin).max() > FAR * size:
+        raise SourceError(
+            f"the orbit at {row.parameter} = {row.values[i]:.10g} is not one of the oscillator that the attributes and "
+            "the scene describe; they belong to another sweep"
+        )
 
 
 def _about(data: Sweep, parameter: str) -> dict[str, Any]:

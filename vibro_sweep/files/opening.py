@@ -63,6 +63,9 @@ def open_file(path: Path) -> xarray.Dataset:
     except (OSError, RuntimeError, ValueError, KeyError, TypeError, AttributeError) as error:
         if path.suffix.lower() in (".yaml", ".yml"):
             raise StoreError(f"{path} is a scene, not an HDF5 file: `vibro-sweep run {path}` makes that") from None
+        if "already open for write" in str(error):
+            told = f"{path} was left open by a program that was killed; `h5clear -s {path}` frees it"
+            raise StoreError(told) from None
         raise StoreError(f"{path} is not an HDF5 file, or it is damaged ({cut(str(error))})") from None
     try:
         return _described(data, path, sealed)

@@ -57,7 +57,7 @@ def sweep_in(given: "str | Path | xarray.Dataset", computes: bool) -> Iterator[S
                 _log.warning("%s", foreign(path))
             yield Sweep(data, str(path), lambda name: verify(data, [name]))
     else:
-        yield Sweep(given, str(given.encoding.get("source", "this dataset")))
+        yield Sweep(given, "this dataset")
 
 
 def _check_ragged(data: xarray.Dataset, path: Path) -> None:

@@ -18,12 +18,14 @@ class Sweep:
 
     name : in messages
     attrs : attributes, `sweep_dimensions` those that are left
+    in_memory : whether it is a Dataset of the user's, and no file
     keys : names of the sweep's dimensions, in order
     held : swept numbers of which one value is left
     """
 
     def __init__(self, data: xarray.Dataset, name: str, verify: Callable[[str], None] | None = None):
         self.data, self.name, self._verify = data, name, verify
+        self.in_memory = verify is None
         swept = [str(one) for one in np.atleast_1d(data.attrs["sweep_dimensions"])]
         self.keys = [one for one in swept if one in data.dims]
         self.held = {one: float(data[one]) for one in swept if one not in data.dims and one in data.coords}
@@ -38,6 +40,12 @@ class Sweep:
     def names(self) -> list[str]:
         """The names of what is computed."""
         return [str(name) for name in self.data.data_vars]
+
+    @property
+    def numbers(self) -> dict[str, float]:
+        """The coordinates that have one value, but for swept ones."""
+        found = {str(name): one for name, one in self.data.coords.items() if one.ndim == 0 and one.dtype.kind in "if"}
+        return {name: one.item() for name, one in found.items() if name not in self.held}
 
     @property
     def sizes(self) -> dict[str, int]:

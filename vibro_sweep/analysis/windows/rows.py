@@ -84,6 +84,15 @@ def check_data(data: Sweep) -> None:
         raise ArgumentError("section: 'impact' is not allowed; windows start from states at t = 0 mod T, kind: phase")
     if "period" not in data or "x1" not in data:
         raise ArgumentError("observe: has no 'section'; windows start from the section states of a sweep")
+    if "status" not in data:
+        raise ArgumentError("has no `status`, which tells the orbits that are computed; it is needed")
+    if more := [name for name in data.dims("period") if name not in (*data.keys, "start")]:
+        raise ArgumentError(f"has the dimension {more[0]}, which its sweep has not; take one part by `isel`")
+    for name, value in data.numbers.items():
+        if name in data.attrs and data.attrs[name] != value:
+            raise ArgumentError(
+                f"{name}: the coordinate says {value!r} and the attribute {data.attrs[name]!r}; they must agree"
+            )
 
 
 def rows_of(data: Sweep, system, key: str) -> Iterator[Row]:
