@@ -4,6 +4,7 @@ import re
 
 import h5py
 import matplotlib
+import netCDF4
 import numpy as np
 import pytest
 import xarray
@@ -80,6 +81,22 @@ def test_matrices_as_attributes_are_still_read(kinds, tmp_path):
         assert np.array_equal(data.attrs["M"], [[1, 0], [0, 2]])
         vs.plot(data)
     assert main(["info", str(content)]) == 0
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_netcdf4_reads_all_of_it(kinds, name):
+    """The C library of netCDF: every variable and attribute, no group but ours."""
+    with netCDF4.Dataset(kinds(name)) as file, vs.open(kinds(name)) as data:
+        assert set(file.groups) <= {"check"}
+        lengths = {key for key in file.dimensions if key not in data.variables}
+        assert set(file.variables) - lengths == set(data.variables)
+        for key, one in data.variables.items():
+            there = file.variables[key]
+            there.set_auto_mask(False)
+            assert there.dimensions == one.dims
+            assert one.dtype.kind == "U" or there[...].tobytes() == one.values.tobytes(), key
+        for key in data.attrs.keys() - {"history", "provenance", "sweep_dimensions"}:
+            assert np.array_equal(np.atleast_1d(file.getncattr(key)), np.atleast_1d(data.attrs[key])), key
 
 
 # What xarray has written

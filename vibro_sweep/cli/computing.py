@@ -62,7 +62,7 @@ class Computation:
             check_output(self.output, inputs, self.picture, self.mode)
 
     @contextmanager
-    def under_way(self, total: int, *errors: type[Exception]) -> Iterator[tuple]:
+    def under_way(self, *errors: type[Exception]) -> Iterator[tuple]:
         """Executor and progress, while the file is computed; what fails then has a message of its own."""
         from vibro_sweep.driver.compute import RunError
         from vibro_sweep.driver.progress import progress_bar
@@ -74,7 +74,7 @@ class Computation:
             to_continue = self.advice("--resume")
             interrupt.advise(to_continue)
             try:
-                bar = progress_bar(total, self.quiet)
+                bar = progress_bar(self.quiet)
                 with messages(self.quiet), workers_of_a_cluster as executor, bar as progress:
                     yield executor, progress
             except RunError as error:
@@ -89,7 +89,7 @@ def compute(computation: Computation, scene) -> bool:
     from vibro_sweep.scene import Scene
 
     of_sweep = isinstance(scene, Scene)
-    with computation.under_way(scene.n_points if of_sweep else 0, ValueError) as (executor, progress):
+    with computation.under_way(ValueError) as (executor, progress):
         report = run.run(scene, computation.output, computation.workers, executor, progress, computation.mode)
     if of_sweep and not computation.quiet:
         from .summaries import summary
@@ -104,7 +104,7 @@ def compute_windows(computation: Computation, file: Path, parameter: str | None)
     """Compute the windows of a sweep's file and print their table."""
     from vibro_sweep.driver.windows import run_windows
 
-    with computation.under_way(0, ValueError) as (executor, progress):
+    with computation.under_way(ValueError) as (executor, progress):
         run_windows(file, computation.output, parameter, computation.workers, executor, progress, computation.mode)
     if not computation.quiet:
         say_tables(computation.output)

@@ -1,60 +1,52 @@
-"""The progress bar: orbits done, their rate and the time left, whatever computes them."""
+"""How far a run is: a bar on a terminal or in a notebook, a line a minute elsewhere."""
 
 import contextlib
 import logging
 import sys
 import time
 from collections.abc import Callable, Iterator
+from shutil import get_terminal_size
 
-from vibro_sweep.driver.notebook_bar import notebook_bar
 from vibro_sweep.model import notices
 
 _log = logging.getLogger("vibro_sweep")
 
+DELAY = 2.0  # seconds before a bar is shown in a notebook, which keeps what is short
 BETWEEN_LINES = 60.0  # seconds between lines in the output of a batch job
+
+Tell = Callable[[int, int], None]  # (done, total)
 
 
 @contextlib.contextmanager
-def progress_bar(total: int, quiet: bool):
-    """A callable (done, total) that draws on a terminal or in a notebook, or says it in a line a minute where neither
-    is there; None if quiet."""
-    if not quiet and _in_notebook():
-        with notebook_bar() as show:
-            yield show
-        return
+def progress_bar(quiet: bool) -> Iterator[Tell | None]:
+    """What shows (done, total); None if quiet."""
     if quiet:
         yield None
-        return
-    if not sys.stderr.isatty():
+    elif (notebook := _in_notebook()) or (sys.stderr is not None and sys.stderr.isatty()):
+        from tqdm import tqdm  # not needed elsewhere
+
+        (columns, rows), delay = get_terminal_size(), DELAY if notebook else 0.0
+        room = {"ncols": columns, "nrows": rows}
+        with tqdm(unit=" orbits", delay=delay, leave=False, smoothing=0.0, file=sys.stderr, **room) as bar:
+
+            def show(done: int, total: int) -> None:
+                if bar.total is None:  # the first ones were there before
+                    bar.initial = bar.n = done
+                bar.total = total
+                bar.update(done - bar.n)
+                if done >= total:
+                    bar.refresh()
+
+            yield show
+    else:
         yield lines()
-        return
-    from rich.console import Console  # slow to import
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
-
-    columns = [
-        BarColumn(),
-        MofNCompleteColumn(),
-        TextColumn("points  {task.fields[rate]}"),
-        TimeRemainingColumn(),
-    ]
-    window = 600  # seconds over which the rate is taken: a block may take minutes
-    with Progress(*columns, console=Console(stderr=True), transient=True, speed_estimate_period=window) as bar:
-        task = bar.add_task("", total=total, rate="compiling")
-
-        def show(done: int, total: int):
-            bar.update(task, completed=done, total=total)
-            speed = bar.tasks[task].speed
-            if speed:  # known from the second block on
-                bar.update(task, rate=f"{speed:,.0f}/s " if speed >= 10 else f"{speed:.2g}/s ")
-
-        yield show
 
 
-def lines() -> Callable[[int, int], None]:
-    """A callable (done, total) that logs it once a minute."""
+def lines() -> Tell:
+    """What logs (done, total) once a minute."""
     said = time.monotonic()
 
-    def show(done: int, total: int):
+    def show(done: int, total: int) -> None:
         nonlocal said
         if time.monotonic() - said >= BETWEEN_LINES and done < total:
             said = time.monotonic()
@@ -69,12 +61,10 @@ def _in_notebook() -> bool:
 
 
 @contextlib.contextmanager
-def given_or_bar(
-    progress: Callable[[int, int], None] | None, total: int
-) -> Iterator[Callable[[int, int], None] | None]:
+def given_or_bar(progress: Tell | None) -> Iterator[Tell | None]:
     """The caller's progress; where there is none, the bar, unless notices are silenced."""
     if progress is not None:
         yield progress
         return
-    with progress_bar(total, not notices.shown()) as bar:
+    with progress_bar(not notices.shown()) as bar:
         yield bar

@@ -74,7 +74,7 @@ def run(
         return run_sweep(scene, output, workers, executor, progress, mode, block)
     if block is not None:
         raise ArgumentError(not_allowed("block", block, "None of a scene of branches or curves"))
-    with given_or_bar(progress, 0) as tell:
+    with given_or_bar(progress) as tell:
         computed = run_continuation(scene, output, workers, executor, tell, mode)
     return _report(output, computed)
 

@@ -108,7 +108,7 @@ def fill(
     """Compute what is missing of a sweep; arguments and errors as of `run`."""
     total = scene.n_points
     missing, done = total - file.done(), file.done()
-    with given_or_bar(progress, total) as tell:
+    with given_or_bar(progress) as tell:
         if tell:
             tell(done, total)
         if missing:

@@ -82,7 +82,7 @@ def windows(
     if output is None and mode != "new":
         raise ArgumentError(not_allowed("mode", mode, "'new' without a file, `output`"))
     search = None
-    with given_or_bar(progress, 0) as tell:
+    with given_or_bar(progress) as tell:
         if output is not None:
             search = run_windows(data, output, parameter, workers, None, tell, mode)
         with swept(data) as found:
