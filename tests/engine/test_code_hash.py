@@ -24,8 +24,8 @@ NUMBERLESS = {
     "driver/__init__.py",
     "driver/code_hash.py",
     "driver/cost.py",
-    "store/__init__.py",
-    "store/layout.py",
+    "files/__init__.py",
+    "files/making.py",
 }
 
 
