@@ -33,7 +33,7 @@ KILLED = tuple(name for name in ALL if name != "orbit")  # which is one block
 PROGRAM = """
 import math, os, signal, sys
 from vibro_sweep.__main__ import program
-from vibro_sweep.driver import compute, pool
+from vibro_sweep.driver import compute, sweep
 from vibro_sweep.files import sweep_file
 from vibro_sweep.files.pieces import Pieces
 from vibro_sweep.files.sweep_file import SweepFile
@@ -46,7 +46,7 @@ plain = compute.compute
 def logged(block):
     write("begun", math.prod(part.stop - part.start for part in block.box))
     return plain(block)
-pool.compute = logged
+sweep.compute = logged
 commit, keep = SweepFile.commit, Pieces.write
 def committed(self):
     count = sum(statuses.size for _, statuses in self._waiting)

@@ -11,7 +11,6 @@ from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 from pathlib import Path
 
-import h5py
 import pytest
 from support import ROOT
 from support.clusters import LIMIT, command_of
@@ -74,8 +73,8 @@ def test_dask_processes_and_threads_agree(tmp_path, cluster, scene, whole):
     assert main(command_of(scene, tmp_path / "dask.h5", cluster)) == 0
     assert_same_bits(arrays_of(tmp_path / "dask.h5"), whole)
     assert all(worker.poll() is None for worker in workers)
-    with h5py.File(tmp_path / "dask.h5") as file:
-        assert json.loads(file.attrs["provenance"])["executor"] == "ClusterExecutor"
+    with vs.open(tmp_path / "dask.h5") as data:
+        assert json.loads(data.attrs["provenance"])["executor"] == "ClusterExecutor"
 
 
 @pytest.mark.slow

@@ -18,7 +18,7 @@ from support.contents import arrays_of, assert_same_bits
 from support.scenes import PAPER, SCENES, scene_of
 
 import vibro_sweep as vs
-from vibro_sweep.driver import blocks, cost, jobs, memory_needed, pool
+from vibro_sweep.driver import blocks, cost, executors, memory_needed
 from vibro_sweep.driver.compute import BlockError, compute
 from vibro_sweep.engine.records import result_of
 from vibro_sweep.engine.simd.lanes import LANES
@@ -244,9 +244,8 @@ class Silent(Executor):
 
 @pytest.mark.parametrize("gone", [True, False])
 def test_a_scheduler_that_dies_ends_in_one_message(monkeypatch, tmp_path, gone):
-    for module in (jobs, pool):
-        monkeypatch.setattr(module, "PATIENCE", 0.01)
+    monkeypatch.setattr(executors, "PATIENCE", 0.01)
     with pytest.raises(vs.RunError, match="the scheduler has died"):
-        list(jobs.results(Silent(gone), abs, [("a", -1)]))
+        list(executors.completed(Silent(gone), abs, iter([-1, None]).__next__, lambda: 1))
     with pytest.raises(vs.RunError, match="the scheduler has died"):
         vs.run(scene_of(SCENES["follow"]), tmp_path / "x.h5", executor=Silent(gone))

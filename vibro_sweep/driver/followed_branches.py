@@ -8,7 +8,7 @@ import numpy as np
 from vibro_sweep.analysis.branches.branch_arrays import SHAPES, Arrays
 from vibro_sweep.analysis.branches.branch_search import Branches, compute_branch
 from vibro_sweep.analysis.branches.search import Node
-from vibro_sweep.driver.jobs import computed
+from vibro_sweep.driver.executors import kept
 from vibro_sweep.driver.joining import columns_in_file, joined
 from vibro_sweep.driver.origins import seeds_of
 from vibro_sweep.files.pieces import Pieces
@@ -23,7 +23,7 @@ def followed_branches(
 ) -> tuple[list[Quantity], Arrays]:
     """Raises NoOrbitError where the scene's first orbit does not exist. progress(done, total) counts branches."""
     names, masses = list(scene.parameter), scene.system.masses
-    evaluate = computed(compute_branch, pool, file, progress)
+    evaluate = kept(compute_branch, pool, file, progress)
     search = Branches(tuple(names), tuple(scene.parameter.values()), scene.follow)
     found = search.run(seeds_of(scene, file, pool), scene.depth, evaluate)
     arrays = joined([node.arrays for node in found], SHAPES, names, masses)

@@ -14,8 +14,8 @@ from vibro_sweep.analysis.curves.curve_arrays import SHAPES
 from vibro_sweep.analysis.curves.curve_search import Curves, compute_curve, seed_at
 from vibro_sweep.analysis.windows.edges import Plane
 from vibro_sweep.analysis.windows.explained import explain, probe
+from vibro_sweep.driver.executors import kept
 from vibro_sweep.driver.followed_branches import where_met
-from vibro_sweep.driver.jobs import computed
 from vibro_sweep.driver.joining import columns_in_file, joined
 from vibro_sweep.driver.origins import seeds_of, specials_of
 from vibro_sweep.driver.swept_plane import edges_in_file
@@ -38,9 +38,9 @@ def followed_curves(
     of_plane : the plane whose edges are explained (swept_plane.py), if the scene begins from one
     """
     names, bounds, more = tuple(scene.parameter), tuple(scene.parameter.values()), {}
-    evaluate = computed(compute_curve, pool, file, progress)
+    evaluate = kept(compute_curve, pool, file, progress)
     if of_plane is not None:
-        evaluate_probes = computed(probe, pool, file, progress)
+        evaluate_probes = kept(probe, pool, file, progress)
         found = explain(*of_plane, names, bounds, scene.of, scene.depth, evaluate_probes, evaluate)
         curves, more = found.curves, edges_in_file(of_plane[0], found)
     else:
@@ -63,7 +63,7 @@ def _starts(scene: Continuation, names, bounds, pool, file, progress) -> list[Se
 def _on_branches(scene: Continuation, pool, file, progress) -> list[SpecialPoint]:
     """All special points of the branches of the scene's orbits along its first number."""
     key, bounds = next(iter(scene.parameter.items()))
-    keep = computed(compute_branch, pool, file, progress)
+    keep = kept(compute_branch, pool, file, progress)
 
     def evaluate(names, jobs):
         return keep([f"branch {name}" for name in names], jobs)

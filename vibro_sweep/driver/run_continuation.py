@@ -4,9 +4,9 @@ from collections.abc import Callable
 from concurrent.futures import Executor
 from pathlib import Path
 
+from vibro_sweep.driver.executors import workers_of
 from vibro_sweep.driver.followed_branches import followed_branches
 from vibro_sweep.driver.followed_curves import followed_curves
-from vibro_sweep.driver.jobs import workers_of
 from vibro_sweep.driver.origins import NoOrbitError, attributes_of, source_of
 from vibro_sweep.driver.provenance import provenance
 from vibro_sweep.driver.source_file import computed_from_source

@@ -1,6 +1,7 @@
 """From a scene to its file: blocks of points, computed by an executor, handed to the store as they come."""
 
 import logging
+from collections import deque
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import closing
@@ -12,7 +13,7 @@ import numpy as np
 from vibro_sweep.driver import MOST_WORKERS
 from vibro_sweep.driver.attractor_ids import following, number_attractors
 from vibro_sweep.driver.blocks import Block, blocks, next_part, whole_chains
-from vibro_sweep.driver.compute import CHAIN_ENDS
+from vibro_sweep.driver.compute import CHAIN_ENDS, compute
 from vibro_sweep.driver.cost import (
     BLOCK_SECONDS,
     crowding,
@@ -24,8 +25,8 @@ from vibro_sweep.driver.cost import (
     side_by_side,
     threads_of,
 )
+from vibro_sweep.driver.executors import completed, worker_count
 from vibro_sweep.driver.memory_needed import available_cores, blocks_under_way, orbits_per_block
-from vibro_sweep.driver.pool import as_computed
 from vibro_sweep.driver.progress import given_or_bar
 from vibro_sweep.driver.provenance import provenance
 from vibro_sweep.engine.halting import heed, interruptible, new_halt
@@ -146,7 +147,7 @@ def _results(
     scene: Scene, file: SweepFile | InMemory, missing: int, workers: int, executor: Executor | None, points: int | None
 ) -> Iterator[tuple]:
     """Results of all blocks, of so many points, with one of the missing orbits, as they come."""
-    count = workers if executor is None else _worker_count(executor, workers)
+    count = workers if executor is None else worker_count(executor, workers)
     cost = interruptible(orbit_cost, scene, count)
     orbits = orbits_per_block(scene, count)
     most = blocks_under_way(scene, orbits, here=executor is None)
@@ -162,26 +163,24 @@ def _results(
         more = f", up to {duration(seconds * longest(scene))} to settle" if scene.settle else ""
         _log.info("%s orbits, about %s with %s workers%s", f"{missing:,}", duration(seconds), count, more)
     todo = (block for block in blocks(scene, size, orbits) if file.missing(whole_chains(block)))
+    parts: deque[Block] = deque()  # which go on with the chains of others
+
+    def next_block() -> Block | None:
+        return parts.popleft() if parts else next(todo, None)
 
     def window() -> int:  # one block for each worker: it gets its next when the one before is safe in the file
-        return min(_worker_count(pool, workers), most)
-
-    def go_on(block: Block, arrays: dict) -> Block:
-        return next_part(scene, block, arrays.pop(CHAIN_ENDS))
+        return min(worker_count(pool, workers), most)
 
     try:
-        for box, arrays in as_computed(pool, todo, window, go_on):
+        for block, (box, arrays) in completed(pool, compute, next_block, window):
+            if not block.last:
+                parts.append(next_part(scene, block, arrays.pop(CHAIN_ENDS)))
             if file.missing(box):  # parts of chains may only lead to the one that is missing
                 yield box, arrays
     finally:
         if executor is None:
             halt[0] = 1
             pool.shutdown(wait=False, cancel_futures=True)
-
-
-def _worker_count(pool: Executor, default: int) -> int:
-    """Blocks that an executor computes at a time, now: it may grow. mpi4py and `cluster` call it `num_workers`."""
-    return getattr(pool, "num_workers", None) or getattr(pool, "_max_workers", None) or default
 
 
 def _how(scene: Scene, threads: int | None, executor: Executor | None) -> dict:

@@ -16,7 +16,7 @@ from vibro_sweep.analysis.windows.rows import Row, check_data, chosen_key, rows_
 from vibro_sweep.analysis.windows.unvisited import unvisited_in
 from vibro_sweep.analysis.windows.window import Windows, in_file_order, windows_of
 from vibro_sweep.analysis.windows.window_search import WindowSearch
-from vibro_sweep.driver.jobs import computed, workers_of
+from vibro_sweep.driver.executors import kept, workers_of
 from vibro_sweep.driver.joining import columns_in_file, joined
 from vibro_sweep.driver.progress import given_or_bar
 from vibro_sweep.driver.provenance import provenance
@@ -145,7 +145,7 @@ def search_of(
         if progress:
             progress(max(search.done, done), search.total)
 
-    search.search(computed(window_of, pool, file, tell))
+    search.search(kept(window_of, pool, file, tell))
     return search
 
 
