@@ -1,7 +1,7 @@
 """pytest for mutations.py, in a process of its own: all tests, to see what each calls, or chosen ones up to a failure.
 
-python chosen_tests.py ORDER OUT: ORDER is a file with the names of tests and the minutes for them; OUT gets the last
-that was begun, and whether it fails. Without names all tests are run, and OUT gets what they call.
+python chosen_tests.py ORDER OUT: ORDER is a file with the names of tests, the minutes for them and their mark; OUT gets
+the last that was begun, and whether it fails. Without names all of that mark are run, and OUT gets what they call.
 """
 
 import json
@@ -71,7 +71,7 @@ class Tests:
 
 if __name__ == "__main__":
     order, out = map(Path, sys.argv[1:])
-    chosen, minutes = json.loads(order.read_text())
+    chosen, minutes, mark = json.loads(order.read_text())
     files = sorted({name.partition("::")[0] for name in chosen or ["tests"]})
-    common = ["-q", "-n", "0", "-m", "", "-p", "no:cacheprovider", *["-x"] * (chosen is not None)]
+    common = ["-q", "-n", "0", "-m", mark, "-p", "no:cacheprovider", *["-x"] * (chosen is not None)]
     sys.exit(pytest.main([*common, *files], [Tests(chosen, minutes, out)]))

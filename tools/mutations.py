@@ -2,9 +2,10 @@
 
 python tools/mutations.py --work FOLDER [--lines 60] [--seed 28] [--only 3 17] [--log FILE]
 
-FOLDER gets a copy of the checkout, its compiled kernels, and what each test calls: all tests are run
-once for that. Then tests run in order of nearness to the changed line, until one fails; one that does not end fails,
-too (`chosen_tests.py`). Lines that no kernel contains come first.
+FOLDER gets a copy of the checkout, its compiled kernels, and what each fast test calls: these are run once for that.
+Then tests run in order of nearness to the changed line, until one fails; one that does not end fails, too
+(`chosen_tests.py`). Where no fast test fails come the slow ones of the line's subject. Lines that no kernel contains
+come first. A copy of FOLDER with `--only` other lines can be used by a second process.
 """
 
 import argparse
@@ -26,6 +27,11 @@ ROOT = Path(__file__).resolve().parents[1]
 RUN = str(ROOT / "tools" / "chosen_tests.py")
 ROOMS = ("analysis", "driver", "engine", "model", "tables")  # of the package
 FIRST = 40  # tests that are collected first
+FAST, SLOW = "not slow", "slow"
+SUBJECTS = {  # folders of the slow tests of a room
+    "analysis": ("orbits",), "driver": ("sweeps", "files", "commands"), "engine": ("accuracy", "engine", "sweeps"),
+    "model": ("scenes", "accuracy"), "tables": ("scenes", "files"),
+}  # fmt: skip
 CHANGES = {
     "+": ["-"], "-": ["+"], "*": ["/"], "/": ["*"], "//": ["/"], "+=": ["-="], "-=": ["+="], "*=": ["/="], "/=": ["*="],
     "<": ["<=", ">"], "<=": ["<", ">="], ">": [">=", "<"], ">=": [">", "<="], "==": ["!="], "!=": ["=="],
@@ -120,7 +126,20 @@ def started(command: list[str], work: Path, cache: str) -> tuple[int, str]:
     return process.returncode, (work / "output.txt").read_text().strip()
 
 
-def first_to_fail(work: Path, change: tuple, tests: dict, minutes: float) -> str:
+def slow_tests(work: Path) -> list[str]:
+    """Their names."""
+    command = ["-m", "pytest", "--collect-only", "-q", "-n", "0", "-m", SLOW, "-p", "no:cacheprovider", "tests"]
+    return [line for line in started(command, work, "cache")[1].splitlines() if line.startswith("tests/")]
+
+
+def of_subject(tests: list[str], name: str) -> list[str]:
+    """The tests of the subject of a file of the package, those with words of its name first."""
+    folders, words = SUBJECTS[name.split("/")[1]], [word for word in Path(name).stem.split("_") if len(word) > 3]
+    near = [test for test in tests if any(word in test for word in words)]
+    return near + [test for test in tests if test.split("/")[1] in folders and test not in near]
+
+
+def first_to_fail(work: Path, change: tuple, tests: dict, slow: list[str], minutes: float) -> str:
     """With the change: a test, and how it ended."""
     name, row, column, before, after = change
     path, line, cache = work / "checkout" / name, Line(work / "checkout", name, row), "cache"
@@ -137,9 +156,11 @@ def first_to_fail(work: Path, change: tuple, tests: dict, minutes: float) -> str
                     (work / cache / new / kernel.parent.name).mkdir(exist_ok=True)
                     os.link(kernel, work / cache / new / kernel.parent.name / kernel.name)
         order = line.order(tests)
-        for chosen in (order[:FIRST], order[FIRST:]):
+        for chosen, mark in ((order[:FIRST], FAST), (order[FIRST:], FAST), (of_subject(slow, name), SLOW)):
+            if not chosen:
+                continue
             (work / "outcome.txt").unlink(missing_ok=True)
-            (work / "order.json").write_text(json.dumps([chosen, minutes]))
+            (work / "order.json").write_text(json.dumps([chosen, minutes, mark]))
             status, printed = started([RUN, str(work / "order.json"), str(work / "outcome.txt")], work, cache)
             said = (work / "outcome.txt").read_text() if (work / "outcome.txt").exists() else ""
             if said.startswith("fails"):
@@ -169,16 +190,17 @@ def main():
     if not home.exists():
         shutil.copytree(ROOT, home, ignore=shutil.ignore_patterns(".git", "__pycache__"))
     if not (work / "calls.json").exists():
-        (work / "order.json").write_text("[null, null]")
+        (work / "order.json").write_text(json.dumps([None, None, FAST]))
         started([RUN, str(work / "order.json"), str(work / "calls.json")], work, "cache")
     tests = json.loads((work / "calls.json").read_text())
+    slow = slow_tests(work)
     numbers = options.only or range(1, options.lines + 1)
     chosen = [(n, c) for n, c in enumerate(drawn(home, options.lines, options.seed), 1) if n in numbers]
     for n, change in sorted(chosen, key=lambda pair: Line(home, *pair[1][:2]).compiled):
         name, row, column, before, after = change
         line = (home / name).read_text().splitlines()[row - 1]
         line = f"{line[:column]}{{{before} -> {after}}}{line[column + len(before) :]}".strip()
-        outcome = first_to_fail(work, change, tests, options.minutes)
+        outcome = first_to_fail(work, change, tests, slow, options.minutes)
         said = f"{n:2d}  {name.removeprefix('vibro_sweep/')}:{row}  {line}  | {outcome}\n"
         print(said, end="", flush=True)
         with options.log.open("a") as log:
