@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import h5py
 import pytest
@@ -176,7 +177,7 @@ def test_ctrl_c_at_any_moment_of_the_beginning(folder, compiled):
         # a quick machine has said by then that it compiles, how long that took and what the run will take
         expected = r"vibro-sweep: (compiling kernels, once: .*|compiled \w+ in \d+ s|[\d,]+ orbits, about .* workers)"
         assert len(set(before)) == len(before) and all(re.fullmatch(expected, line) for line in before), (k, error)
-        assert not output.exists()
+        assert not Path(f"{output}.lock").exists()
 
 
 def test_a_bug_is_called_a_bug(folder, capsys, monkeypatch):

@@ -14,7 +14,7 @@ from support.explorers import answers
 
 import vibro_sweep as vs
 from golden.drawn import array
-from golden.files import PAPER
+from golden.files import PAPER, comparable
 from golden.shown import different
 
 PAGES = {
@@ -111,4 +111,4 @@ def _shown(value) -> float | None:
 
 def differences_from(record: dict) -> list[str]:
     """Between a record and what the page answers now."""
-    return different(record["result"], result_of(record))
+    return different(comparable(record["result"]), comparable(result_of(record)))

@@ -152,6 +152,8 @@ def differences_from(record: dict) -> list[str]:
 
 def comparable(what):
     """Without what format 3 has otherwise: the order of variables and attributes, how texts are stored."""
+    if isinstance(what, list):
+        return [comparable(one) for one in what]
     if not isinstance(what, dict):
         return what
     found = {name: comparable(what[name]) for name in sorted(what) if name not in OF_THE_FORMAT}

@@ -241,7 +241,7 @@ def test_drawing_needs_no_display_and_no_engine(folder):
         "import sys, vibro_sweep as vs\n"
         "for kind in ('bifurcation', 'lyapunov', 'impacts', 'iteration', 'poincare'):\n"
         "    vs.plot('x.h5', kind, output=f'{kind}.png')\n"
-        "heavy = {'numba', 'pydantic', 'matplotlib.pyplot', 'yaml', *(f'vibro_sweep.{room}' for room in"
+        "heavy = {'numba', 'pydantic', 'matplotlib.pyplot', *(f'vibro_sweep.{room}' for room in"
         " ('engine', 'scene', 'driver', 'analysis'))}\n"
         "print(sorted(heavy & {*sys.modules}))"
     )

@@ -29,7 +29,7 @@ COMPUTING = {
 }
 SLOW = (*COMPUTING, "vs.windows", "--overwrite")  # they compute
 RESUMING = ("run --resume", "windows --resume")
-CHANGING = (*RESUMING, "--overwrite")  # they may write the file that they are given
+CHANGING = (*RESUMING, "--overwrite", "again")  # they may write, or touch, the file that they are given
 BOX = "parameter: {b: [5.85, 6.2], omega: [0.6295, 0.6305]}"
 OF_PLANE = "parameter: {b: [6.5, 6.7], omega: [0.62, 0.65]}"
 SCENES = {

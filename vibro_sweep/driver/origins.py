@@ -23,7 +23,7 @@ from vibro_sweep.analysis.windows.members import solution_in
 from vibro_sweep.analysis.windows.rows import Row
 from vibro_sweep.analysis.windows.window_search import RowWindow, WindowSearch
 from vibro_sweep.driver.joining import part_of
-from vibro_sweep.driver.source_file import SourceError
+from vibro_sweep.driver.source_file import SourceError, run_id_of
 from vibro_sweep.driver.windows import rows_in, search_of
 from vibro_sweep.files.pieces import Pieces
 from vibro_sweep.files.reading import sweep_in
@@ -55,11 +55,11 @@ def source_of(scene: Continuation) -> Source:
             if data.attrs.get("kind", SWEEP) != SWEEP:
                 raise SourceError(f"continue.from.sweep: {scene.begin} holds {cut(str(data.attrs['kind']))}, no sweep")
             own = _rows(scene, data)[0].system
-            run_id = data.run_id
+            run_id = run_id_of(data)
     elif scene.origin == "branches":
         with sweep_in(Path(scene.begin), computes=True) as data:
             own, names = _at_special(scene, data)
-            run_id = data.run_id
+            run_id = run_id_of(data)
         free |= {name: own.numbers[name] for name in names}
     else:
         return Source(scene.system, "")

@@ -1,17 +1,22 @@
 """The file from which something is computed: where what it holds is refused, the message names it."""
 
+import hashlib
 from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from vibro_sweep.files.file_errors import StoreError
 from vibro_sweep.files.reading import sweep_in
 from vibro_sweep.model.arguments import check_type
+from vibro_sweep.model.built import BUILD
 from vibro_sweep.model.errors import VibroSweepError
 from vibro_sweep.model.files import FileError
 from vibro_sweep.results.sweep_dataset import Sweep
-from vibro_sweep.scene import Continuation
+from vibro_sweep.scene import Continuation, parse_scene
+from vibro_sweep.tables.file_columns import SWEEP
 
 if TYPE_CHECKING:
     import xarray
@@ -59,3 +64,17 @@ def computed_from_source(scene: Continuation) -> AbstractContextManager[None]:
     if scene.origin not in ("sweep", "branches"):
         return nullcontext()
     return computed_from(scene.begin, f"continue.from.{scene.origin}: ")
+
+
+def run_id_of(data: Sweep) -> str:
+    """The run that computed a sweep; of a part, which has windows of its own, also the values that it has."""
+    known = str(data.attrs.get("identity", ""))
+    if data.attrs.get("kind", SWEEP) != SWEEP or data.attrs.get("type") == BUILD:
+        return known
+    scene = parse_scene(data.attrs["scene"])
+    whole = {**scene.sweep, **({"start": range(scene.n_starts)} if scene.n_starts > 1 else {})}
+    values = {name: np.atleast_1d(data.data[name].values) for name in whole if name in data.data.coords}
+    if all(name in values and len(values[name]) == len(axis) for name, axis in whole.items()):
+        return known
+    named = repr([known, *((name, one.tolist()) for name, one in values.items())])
+    return hashlib.sha256(named.encode()).hexdigest()[:32]

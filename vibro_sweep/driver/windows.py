@@ -20,7 +20,7 @@ from vibro_sweep.driver.executors import kept, workers_of
 from vibro_sweep.driver.joining import columns_in_file, joined
 from vibro_sweep.driver.progress import given_or_bar
 from vibro_sweep.driver.provenance import provenance
-from vibro_sweep.driver.source_file import SourceError, swept
+from vibro_sweep.driver.source_file import SourceError, run_id_of, swept
 from vibro_sweep.driver.sweep import check_how
 from vibro_sweep.files.pieces import Pieces, pieces_run
 from vibro_sweep.files.subject import Complete
@@ -183,7 +183,7 @@ def _about(data: Sweep, parameter: str) -> dict[str, Any]:
     """The attributes of the windows of a sweep."""
     title = str(data.attrs["title"]).removeprefix("vibro_sweep: ")
     names = [parameter, *(name for name in data.keys if name != parameter)]
-    attributes = {"sweep": data.run_id, "parameter": parameter, "parameters": names}
+    attributes = {"sweep": run_id_of(data), "parameter": parameter, "parameters": names}
     attributes["sweep_shape"] = np.array([*(data.sizes[name] for name in data.keys), data.sizes.get("start", 1)])
     attributes |= data.held  # of a part of a Dataset: the values of numbers that were swept
     return ragged_dataset.about(WINDOWS, f"windows of {title}", data.attrs["scene"], attributes)

@@ -100,10 +100,11 @@ def _described(data: xarray.Dataset, path: Path, sealed: bool) -> xarray.Dataset
                 attributes["history"] = "\n".join([str(attributes["history"]), *end.pop("history")])
                 attributes["provenance"] = json.dumps(json.loads(str(attributes["provenance"])) | end)
     texts = {name: one.astype(str) for name, one in data.coords.items() if one.dtype.kind in "SO"}
-    data = data.assign_coords(texts)
-    data.attrs = attributes
-    data.encoding = {"source": str(path), "sealed": sealed, "complete": complete}
-    return data
+    result = data.assign_coords(texts)
+    result.set_close(data.close)
+    result.attrs = attributes
+    result.encoding = {"source": str(path), "sealed": sealed, "complete": complete}
+    return result
 
 
 def _decoded(value: Any) -> Any:

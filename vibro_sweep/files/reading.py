@@ -64,4 +64,6 @@ def _check_ragged(data: xarray.Dataset, path: Path) -> None:
     try:
         ragged_dataset.check(data)
     except (OSError, RuntimeError, ValueError, KeyError, AttributeError) as error:
-        raise StoreError(f"{path} is damaged: {error}") from None
+        if data.encoding["sealed"]:
+            raise StoreError(f"{path} is damaged: {error}") from None
+        raise StoreError(f"{path} does not hold all that {data.attrs['kind']} are: {error}") from None

@@ -1,15 +1,10 @@
 """What is asked of the results of a sweep: its axes, which points are done, numbers and attributes by name."""
 
-import hashlib
 from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
 import xarray
-
-from vibro_sweep.model.built import BUILD
-from vibro_sweep.scene import parse_scene
-from vibro_sweep.tables.file_columns import SWEEP
 
 
 class Sweep:
@@ -31,6 +26,8 @@ class Sweep:
         self.held = {one: float(data[one]) for one in swept if one not in data.dims and one in data.coords}
         self.attrs: dict[str, Any] = {**data.attrs, "sweep_dimensions": self.keys}
         self._known = {"status": data["status"].values} if "status" in data else {}  # before any other number
+        if verify is not None and self._known:
+            verify("status")
 
     def close(self) -> None:
         """Close the file, if there is one."""
@@ -74,17 +71,3 @@ class Sweep:
     def attribute(self, name: str, key: str) -> Any:
         """An attribute of a variable; None where it has no such."""
         return self.data[name].attrs.get(key)
-
-    @property
-    def run_id(self) -> str:
-        """The run that computed it; of a part, which has windows of its own, also the values that it has."""
-        known = str(self.data.attrs.get("identity", ""))
-        if self.data.attrs.get("kind", SWEEP) != SWEEP or self.data.attrs.get("type") == BUILD:
-            return known
-        scene = parse_scene(self.data.attrs["scene"])
-        whole = {**scene.sweep, **({"start": range(scene.n_starts)} if scene.n_starts > 1 else {})}
-        coords = {name: np.atleast_1d(self.data[name].values) for name in whole if name in self.data.coords}
-        if all(name in coords and len(coords[name]) == len(axis) for name, axis in whole.items()):
-            return known
-        named = repr([known, *((name, one.tolist()) for name, one in coords.items())])
-        return hashlib.sha256(named.encode()).hexdigest()[:32]
