@@ -69,4 +69,4 @@ def test_a_bar_on_a_terminal(tmp_path, before, progress, bar):
     file = tmp_path / "program.py"
     file.write_text(before + SWEEP.replace("PROGRESS", progress))
     shown = on_a_terminal(file)
-    assert (b"50/50" in shown) == bar == (b"points" in shown), shown
+    assert (b"50/50" in shown) == bar == (b"orbits/s" in shown), shown
