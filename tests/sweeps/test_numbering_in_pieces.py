@@ -42,7 +42,8 @@ def test_a_plane_of_states_is_grouped_as_a_whole(tmp_path):
 def test_many_points_need_little_memory():
     """Of 10^5 points, made as they are read, less than half of what the file holds of them is ever there at once."""
     count = 100_000
-    scene = scene_of(f"sweep: {{b: {{start: 1, stop: 2, num: {count}}}}}\norbit: {{transient: 1, record: 10}}")
+    sweep = f"sweep: {{b: {{start: 1, stop: 2, num: {count}}}}}\norbit: {{transient: 1, record: 10}}\n"
+    scene = scene_of(sweep + "observe: [attractors]")
 
     class Made:
         """Windows of 100 points, and chaos between them."""
