@@ -54,7 +54,7 @@ def test_an_interrupted_sweep_of_a_function_is_continued_by_the_same_matrices(tm
     whole = vs.sweep(ball, axes, **given)
     with pytest.raises(StoppedError):
         vs.sweep(ball, axes, **given, output=output, progress=stop)
-    with pytest.raises(vs.StoreError, match="`resume` continues it"):
+    with pytest.raises(vs.StoreError, match="`resume` computes that"):
         vs.sweep(ball, axes, **given, output=output)
 
     def other(F):
