@@ -23,7 +23,6 @@ from vibro_sweep.scene import Scene
 CROWDED = 0.1  # seconds for which all workers compute, to see how they get on
 FEW_BYTES, WRITTEN = 10**6, 16 * 10**6  # of a file: those that take no time worth saying; those that are written to see
 TRIES = 3  # of a file, of which the least counts: others wait for the disk as well
-COPIES = 1  # of what is written
 BLOCKS_PER_WORKER = 8  # at least, so that workers end together
 BLOCK_SECONDS = 1.0  # of a thread's block: long enough for its overhead not to count, short enough to lose
 
@@ -93,7 +92,7 @@ def writing_seconds(size: int) -> float:
         least = min(_written(some) for _ in range(TRIES))
     except OSError:  # a full disk: the run will say so
         return 0.0
-    return COPIES * size / len(some) * least
+    return size / len(some) * least
 
 
 def _written(some: bytes) -> float:

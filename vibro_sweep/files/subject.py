@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 from vibro_sweep import __version__
 from vibro_sweep.files.disk import obstacle, same_file
 from vibro_sweep.files.file_errors import StoreError
+from vibro_sweep.files.opening import FORMAT
 from vibro_sweep.model.refusals import cut, not_allowed
 from vibro_sweep.scene import SceneError, parse_continuation, parse_scene
 from vibro_sweep.scene.differences import differences
@@ -63,7 +64,7 @@ def check_outputs(path: Path, mode: str, inputs: Collection[Path]) -> None:
 
 def about_run(attributes: Mapping[str, Any], made_by: Mapping[str, Any], run_id: str) -> dict[str, Any]:
     """The attributes of a file: its subject's, and those of the run that begins now."""
-    begun = {"format": 3, "identity": run_id, "Conventions": "CF-1.11"}
+    begun = {"format": FORMAT, "identity": run_id, "Conventions": "CF-1.11"}
     history = {"history": f"{now()} begun by vibro_sweep {__version__}", "provenance": json.dumps(made_by)}
     return begun | history | dict(attributes)
 

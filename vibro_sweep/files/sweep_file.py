@@ -41,10 +41,9 @@ class SweepFile:
             for name in names:
                 if is_verified(h5, name):
                     damaged |= wrong_points(h5, name)
-        self.damaged = int(np.count_nonzero(damaged))
         self._descriptor = os.open(path, os.O_RDWR | getattr(os, "O_BINARY", 0))
         self._waiting: list[tuple[Box, np.ndarray]] = []  # statuses of numbers that may not be on the disk yet
-        if self.damaged:
+        if damaged.any():
             self.status[damaged] = NOT_COMPUTED
             self._put("status", (), self.status)
 
@@ -75,8 +74,12 @@ class SweepFile:
 
     def commit(self) -> None:
         """Bring the numbers to the disk, and then say which are there."""
-        with faults_said(self.path, KEPT):
-            to_disk(self._descriptor)
+        try:
+            with faults_said(self.path, KEPT):
+                to_disk(self._descriptor)
+        except StoreError:
+            self._waiting = []  # their numbers may be gone, whatever a second attempt says
+            raise
         if not _stands(self.path, self._descriptor):
             raise StoreError(f"{self.path} was removed, or replaced, during the run, and what it held is lost")
         waiting, self._waiting = self._waiting, []

@@ -29,10 +29,6 @@ class Sweep:
         if verify is not None and self._known:
             verify("status")
 
-    def close(self) -> None:
-        """Close the file, if there is one."""
-        self.data.close()
-
     @property
     def names(self) -> list[str]:
         """The names of what is computed."""

@@ -96,6 +96,23 @@ def test_a_write_that_fails(scene, path, whole, monkeypatch):
     assert os.listdir(path.parent) == [path.name]
 
 
+def test_what_did_not_reach_the_disk_has_no_status(scene, path, whole, monkeypatch):
+    """After a failure a second attempt may say that all is well, and the numbers are gone."""
+    answers = iter([None, OSError(errno.EIO, os.strerror(errno.EIO))])
+
+    def to_disk(_):
+        if answer := next(answers, None):
+            raise answer
+
+    with monkeypatch.context() as patch:
+        patch.setattr("vibro_sweep.files.sweep_file.SECONDS", 0.0)
+        patch.setattr("vibro_sweep.files.sweep_file.to_disk", to_disk)
+        failing_run(scene, path, "Input/output error", after=-1)
+    assert counted(described(path))[0] == BLOCK
+    vs.run(scene, path, mode="resume")
+    assert_same_bits(arrays_of(path), whole)
+
+
 def test_disk_full_by_the_command_line(scene, path, tmp_path, capsys):
     (tmp_path / "the_scene.yaml").write_text(TEXT)
     command = ["run", str(tmp_path / "the_scene.yaml"), "-o", str(path), "--workers", "1"]
