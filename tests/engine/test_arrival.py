@@ -70,26 +70,42 @@ def test_how_far_it_is_and_how_fast_it_goes(period):
         assert abs(found["approached_distance"] / left - 1) < 1e-3
 
 
+def by_two_modes(rng, period: int, size: float):
+    """Section points on the way to an orbit of that period by two pairs of multipliers, of which neither has died out,
+    from so far; how far it is still; and the moduli of the two."""
+    orbit, count = rng.normal(size=(period, NUMBERS)), int(rng.integers(80, 200))
+    radii, angles = 1 - 10 ** rng.uniform(-4, -2, 2), rng.uniform([0.2, 1.6], [1.4, 3.0])
+    n, points = np.arange(count), orbit[np.arange(count) % period]
+    for multiplier, part in zip(radii * np.exp(1j * angles), 10 ** rng.uniform(-1, 0, 2), strict=True):
+        modes = rng.normal(size=(period, NUMBERS)) + 1j * rng.normal(size=(period, NUMBERS))
+        points = points + size * part * (multiplier ** (n // period)[:, None] * modes[n % period]).real
+    scale = np.abs(points).max(axis=0)
+    left = np.abs((points - orbit[n % period]) / np.maximum(scale, 1e-3 * scale.max()))[-period:].max()
+    return points, left, radii
+
+
 @pytest.mark.parametrize("period", [1, 2, 3])
 def test_two_modes_at_once(period):
-    """Two pairs of multipliers, of which neither has died out: 300 orbits of each period, all on their way."""
+    """300 orbits of each period, all on their way."""
     rng, seen = np.random.default_rng(period), 0
     for _ in range(300):
-        orbit, count = rng.normal(size=(period, NUMBERS)), int(rng.integers(60, 200))
-        radii, angles = 1 - 10 ** rng.uniform(-4, -2, 2), rng.uniform([0.2, 1.6], [1.4, 3.0])
-        n, points = np.arange(count), orbit[np.arange(count) % period]
-        for multiplier, size in zip(radii * np.exp(1j * angles), 10 ** rng.uniform(-1, 0, 2), strict=True):
-            modes = rng.normal(size=(period, NUMBERS)) + 1j * rng.normal(size=(period, NUMBERS))
-            points = points + size * (multiplier ** (n // period)[:, None] * modes[n % period]).real
-        found, scale = looked_at(points), np.abs(points).max(axis=0)
-        left = np.abs((points - orbit[n % period]) / np.maximum(scale, 1e-3 * scale.max()))[-period:].max()
+        points, left, radii = by_two_modes(rng, period, 1.0)
         if left < 1e-3:
             continue
         seen += 1
+        found = looked_at(points)
         assert (found["period"], found["approached_period"]) == (0, period)
         assert abs(found["approached_factor"] ** period - radii.max()) < 1e-5
         assert abs(found["approached_distance"] / left - 1) < 1e-2
     assert seen > 280
+
+
+@pytest.mark.parametrize("period", [1, 2, 3, 6])
+def test_an_orbit_that_two_modes_have_nearly_left_has_arrived(period):
+    rng = np.random.default_rng(period)
+    for _ in range(300):
+        found = looked_at(by_two_modes(rng, period, 10 ** rng.uniform(-9, -8))[0])
+        assert (found["period"], found["approached_period"]) == (period, 0)
 
 
 def test_chaos_and_tori_are_not_on_their_way():

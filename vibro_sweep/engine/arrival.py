@@ -17,7 +17,12 @@ from typing import NamedTuple
 import numpy as np
 
 from vibro_sweep.engine.simd.jit import jit
-from vibro_sweep.engine.two_modes import look_for_two_modes
+from vibro_sweep.engine.two_modes import (
+    RESIDUAL,
+    approaches_by_two_modes,
+    fade_by_two_modes,
+    look_for_two_modes,
+)
 from vibro_sweep.tables import exponents
 from vibro_sweep.tables.exponents import ARRIVED
 
@@ -191,13 +196,15 @@ def repeats(section, scale, p, o):
 
 
 @jit
-def least_period(section, scale, p, rounding):
+def least_period(section, scale, p, rounding, fit):
     """The least period of points that repeat themselves after p: on a spiral a multiple of it may do so first."""
     for d in range(1, p):
         if p % d == 0 and 3 * d + LEAST_FITTED <= len(section):
             if last_difference(section, scale, d) <= rounding:
                 return d
             if goes_there(recurrence(section, scale, d, second_half(section, d))):
+                return d
+            if fade_by_two_modes(section, scale, d, RESIDUAL, fit):
                 return d
     return p
 
@@ -217,9 +224,9 @@ def keep_approach(section, scale, p, r, found):
 
 
 @jit
-def look_at_repeating(section, scale, p, rounding, found):
+def look_at_repeating(section, scale, p, rounding, fit, found):
     """Points that repeat themselves after p: their least period, and whether the orbit has arrived there."""
-    least = least_period(section, scale, p, rounding)
+    least = least_period(section, scale, p, rounding, fit)
     long = many_periods(section, least)
     too_few = 3 * long + LEAST_FITTED > len(section)
     if too_few or last_difference(section, scale, long) <= STILL:
@@ -229,10 +236,13 @@ def look_at_repeating(section, scale, p, rounding, found):
     if goes_there(r):
         found.approached_period = least
         keep_approach(section, scale, long, r, found)
-        arrived = found.approached_distance <= ARRIVED
-        found.period, found.approached_period = (least, 0) if arrived else (0, least)
     elif last_difference(section, scale, least) <= rounding:
         found.period = least
+        return
+    elif not approaches_by_two_modes(section, scale, least, RESIDUAL, fit, found):
+        return
+    if found.approached_distance <= ARRIVED:
+        found.period, found.approached_period = least, 0
 
 
 @jit
@@ -255,12 +265,12 @@ def is_worth_a_look(section, scale, p, long):
 
 
 @jit
-def arrives_at_the_end(last, scale, rounding, o, found):
+def arrives_at_the_end(last, scale, rounding, o, fit, found):
     """Whether the last points of a record have a period that all of them have not: then that is approached, and the
     orbit is there."""
     for p in range(1, len(last) // 2 + 1):
         if repeats(last, scale, p, o):
-            look_at_repeating(last, scale, p, rounding, found)
+            look_at_repeating(last, scale, p, rounding, fit, found)
             period = found.period
             nothing_known(found)
             if period > 0:
@@ -280,9 +290,9 @@ def look(section, o, scale, rounding, fit, found):
     nothing_known(found)
     for p in range(1, len(section) // 2 + 1):
         if repeats(section, scale, p, o):
-            look_at_repeating(section, scale, p, rounding, found)
+            look_at_repeating(section, scale, p, rounding, fit, found)
             return
-    if arrives_at_the_end(section[-(len(section) // 4) :], scale, rounding, o, found):
+    if arrives_at_the_end(section[-(len(section) // 4) :], scale, rounding, o, fit, found):
         return
     best, left = Recurrence(0.0, 0.0, LIKE / BETTER, 0.0), LONG_LOOKS
     for p in range(1, (len(section) - LEAST_FITTED) // 3 + 1):
@@ -300,8 +310,7 @@ def look(section, o, scale, rounding, fit, found):
             best, found.approached_period = r, p
         if goes_there(best, True):
             break
-    two_modes = section.shape[1] > 2 and best.residual > CLEAR
-    if two_modes and look_for_two_modes(section, scale, BETTER * best.residual, fit, found):
+    if best.residual > CLEAR and look_for_two_modes(section, scale, BETTER * best.residual, fit, found):
         return
     if not goes_there(best):
         nothing_known(found)

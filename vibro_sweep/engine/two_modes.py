@@ -122,19 +122,36 @@ def distance_to_go(section, scale, p, fit):
 
 
 @jit
+def fade_by_two_modes(section, scale, p, most, fit):
+    """Whether differences over p periods obey the recurrence, with a residual of at most so much, and fade away. Its
+    numbers stay in `fit`. One mass has one mode."""
+    count = len(section) - (NUMBERS + 1) * p
+    first = max(count // 2, count - MOST_FITTED)
+    if section.shape[1] == 2 or count - first < LEAST_FITTED:
+        return False
+    if residual(section, scale, p, count - LOOKED_AT, fit) > most:
+        return False
+    r = residual(section, scale, p, first, fit)
+    return r <= most and all_within(fit, 1.0 - SURE * r)
+
+
+@jit
+def approaches_by_two_modes(section, scale, p, most, fit, found):
+    """The same; if so, `found` gets the period p, how far it is to there, and by how much that shrinks in a forcing
+    period."""
+    if not fade_by_two_modes(section, scale, p, most, fit):
+        return False
+    found.approached_period = p
+    found.approached_distance = distance_to_go(section, scale, p, fit)
+    found.approached_factor = largest_root(fit) ** (1.0 / p)
+    return True
+
+
+@jit
 def look_for_two_modes(section, scale, most, fit, found):
-    """Set of `found` the period that section points (n, 2 N) approach by two modes, how far it is to there, and by how
-    much that shrinks in a forcing period. Whether there is one, with a residual of at most so much."""
+    """The same for the least period with which it is so."""
     most = min(most, RESIDUAL)
     for p in range(1, PERIODS + 1):
-        count = len(section) - (NUMBERS + 1) * p
-        first = max(count // 2, count - MOST_FITTED)
-        if count - first < LEAST_FITTED or residual(section, scale, p, count - LOOKED_AT, fit) > most:
-            continue
-        r = residual(section, scale, p, first, fit)
-        if r <= most and all_within(fit, 1.0 - SURE * r):
-            found.approached_period = p
-            found.approached_distance = distance_to_go(section, scale, p, fit)
-            found.approached_factor = largest_root(fit) ** (1.0 / p)
+        if approaches_by_two_modes(section, scale, p, most, fit, found):
             return True
     return False
