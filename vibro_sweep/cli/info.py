@@ -11,8 +11,9 @@ import xarray
 
 from vibro_sweep.cli.ragged_tables import curves_table, special_table, windows_table
 from vibro_sweep.files.file_errors import StoreError
-from vibro_sweep.files.opening import REMEDY, damage, open_file
+from vibro_sweep.files.opening import open_file
 from vibro_sweep.files.reading import open_whole
+from vibro_sweep.files.verifying import REMEDY, damage
 from vibro_sweep.results import ragged_dataset
 from vibro_sweep.results.sweep_dataset import Sweep
 from vibro_sweep.tables.exponents import CERTAIN, periods_to_go, sign_of

@@ -16,6 +16,7 @@ from vibro_sweep.files.sparse import SparseFile
 from vibro_sweep.tables.file_columns import RAGGED
 
 LIBVER = ("v108", "v108")
+OLD, FORMAT = 2, 3  # formats that are read; OLD has checksums of HDF5 in chunks
 CHECKS = "check"  # the group of what this program alone reads; netCDF programs find only variables in the root
 
 _NO_VARIABLE = "This is a netCDF dimension but not a netCDF variable.{:10d}"  # how netCDF names a mere length

@@ -1,10 +1,8 @@
-"""Opening a file: is it one of ours, is it whole, and are its numbers those that were written? Nothing is written."""
+"""Opening a file: is it one of ours, and what does it hold? Its numbers are not looked at yet."""
 
 import json
 import os
 import stat
-import zlib
-from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -12,21 +10,15 @@ import h5py
 import numpy as np
 import xarray
 
-from vibro_sweep.files.checksum import checksums
 from vibro_sweep.files.file_errors import MissingError, StoreError
-from vibro_sweep.files.hdf5 import CHECKS
+from vibro_sweep.files.hdf5 import FORMAT, OLD
 from vibro_sweep.files.seal import SealError, is_sealed
+from vibro_sweep.files.verifying import end_of
 from vibro_sweep.model.refusals import cut
-from vibro_sweep.results.boxes import boxes
 from vibro_sweep.tables.file_columns import SWEEP
-from vibro_sweep.tables.outcomes import NOT_COMPUTED
 
-OLD, FORMAT = 2, 3  # formats that are read; OLD has checksums of HDF5 in chunks
 NETCDF = "_NCProperties"  # the attribute by which a netCDF library says that it has made the file
 PART = b"\x89vibro_sweep"  # with which an interrupted run of 0.2 begins
-END_BYTES = 4096  # of the record that is written when a sweep is complete
-AT_ONCE = 2**24  # bytes that are verified at a time
-REMEDY = "`--resume` computes that again"
 
 
 def open_raw(path: Path) -> BinaryIO:
@@ -118,72 +110,9 @@ def _decoded(value: Any) -> Any:
     return values.item() if values.shape in ((), (1,)) and values.dtype.kind in "biuf" else value
 
 
-def end_of(h5: h5py.File) -> dict[str, Any] | None:
-    """What a complete sweep says of its run; None where that is not written yet, or is not what was written."""
-    raw = h5[f"{CHECKS}/end"][()].tobytes()
-    length, checksum = (int.from_bytes(raw[at : at + 4], "little") for at in (0, 4))
-    text = raw[8 : 8 + length]
-    return json.loads(text) if text and zlib.crc32(text) == checksum else None
-
-
-def end_record(about: dict[str, Any]) -> np.ndarray:
-    """The bytes that `end_of` reads."""
-    text = json.dumps(about).encode()[: END_BYTES - 8]
-    raw = len(text).to_bytes(4, "little") + zlib.crc32(text).to_bytes(4, "little") + text
-    return np.frombuffer(raw.ljust(END_BYTES, b"\0"), np.uint8)
-
-
 def foreign(path: object) -> str:
     """The message about a file without a seal."""
     return (
         f"{path} was written, or changed, by another program than this one: nothing tells whether its numbers are "
         "still those that were computed"
     )
-
-
-def verify(data: xarray.Dataset, names: Iterable[str] | None = None) -> None:
-    """Compare the numbers of variables of a file, by default of all, with their checksums. Raises StoreError."""
-    if found := damage(data, names):
-        raise StoreError(f"{data.encoding['source']} is damaged: {found}; {REMEDY}")
-
-
-def damage(data: xarray.Dataset, names: Iterable[str] | None = None) -> str:
-    """The variables of a file, of some or of all, whose numbers are not those that were written, in words."""
-    if not data.encoding["sealed"]:
-        return ""
-    names = [str(name) for name in data.data_vars] if names is None else [*names]
-    if data.attrs["format"] == OLD:
-        return ", ".join(f"{name} cannot be read" for name in names if not _can_be_read(data, name))
-    if data.attrs["kind"] != SWEEP:
-        return ""  # its seal is of the whole file
-    with h5py.File(data.encoding["source"], "r") as h5:
-        if data.encoding["complete"] and np.any(h5["status"][()] == NOT_COMPUTED):
-            return "status"
-        found = {name: int(np.count_nonzero(wrong_points(h5, name))) for name in names if is_verified(h5, name)}
-    return ", ".join(f"{name} at {count:,} point{'s' * (count > 1)}" for name, count in found.items() if count)
-
-
-def _can_be_read(data: xarray.Dataset, name: str) -> bool:
-    try:
-        return data[name].values is not None
-    except (OSError, RuntimeError):
-        return False
-
-
-def is_verified(h5: h5py.File, name: str) -> bool:
-    """Whether a variable has checksums now: what follows from all points has them when the run is complete."""
-    follows = _decoded(h5[CHECKS].attrs["following"]).split()
-    return name in h5[CHECKS] and (name not in follows or end_of(h5) is not None)
-
-
-def wrong_points(h5: h5py.File, name: str) -> np.ndarray:
-    """Which points (bool, the shape of the sweep) have a status and not the numbers of their checksums."""
-    status = np.array(h5["status"][()])  # before the numbers: another process may be writing them
-    values, sums = h5[name], h5[f"{CHECKS}/{name}"]
-    wrong = np.zeros(status.shape, bool)
-    each = max(1, values.dtype.itemsize * values.size // max(1, status.size))
-    for box in boxes(status.shape, max(1, AT_ONCE // each)):
-        done = status[box] != NOT_COMPUTED
-        if np.any(done):
-            wrong[box] = done & (checksums(values[box], status.ndim) != sums[box])
-    return wrong

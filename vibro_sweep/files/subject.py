@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 from vibro_sweep import __version__
 from vibro_sweep.files.disk import obstacle, same_file
 from vibro_sweep.files.file_errors import StoreError
-from vibro_sweep.files.opening import FORMAT
+from vibro_sweep.files.hdf5 import FORMAT
 from vibro_sweep.model.refusals import cut, not_allowed
 from vibro_sweep.scene import SceneError, parse_continuation, parse_scene
 from vibro_sweep.scene.differences import differences

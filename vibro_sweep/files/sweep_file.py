@@ -16,15 +16,16 @@ from vibro_sweep.files.checksum import checksums
 from vibro_sweep.files.disk import faults_said, to_disk, write_all
 from vibro_sweep.files.file_errors import StoreError
 from vibro_sweep.files.hdf5 import CHECKS
-from vibro_sweep.files.opening import end_record, is_verified, wrong_points
+from vibro_sweep.files.verifying import end_record, is_verified, wrong_points
 from vibro_sweep.results.boxes import Box, stretches
+from vibro_sweep.results.statuses import Statuses
 from vibro_sweep.tables.outcomes import NOT_COMPUTED
 
 SECONDS = 1.0  # between two times at which what was computed is brought to the disk: what a kill costs at most
 KEPT = "what was computed until then is kept: `resume` continues it"
 
 
-class SweepFile:
+class SweepFile(Statuses):
     """The file of a sweep, to be filled by one process. All methods raise StoreError where the disk fails."""
 
     def __init__(self, path: Path):
@@ -46,14 +47,6 @@ class SweepFile:
         if damaged.any():
             self.status[damaged] = NOT_COMPUTED
             self._put("status", (), self.status)
-
-    def missing(self, box: Box) -> bool:
-        """Whether an orbit in a box of the sweep is not computed yet."""
-        return bool((self.status[box] == NOT_COMPUTED).any())
-
-    def done(self) -> int:
-        """Orbits computed so far."""
-        return int(np.count_nonzero(self.status != NOT_COMPUTED))
 
     def write(self, box: Box, arrays: dict[str, np.ndarray]) -> None:
         """Keep a block: within a second a kill does not lose it any more."""

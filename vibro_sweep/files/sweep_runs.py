@@ -12,9 +12,10 @@ import numpy as np
 import xarray
 
 from vibro_sweep.files.file_errors import StoreError
+from vibro_sweep.files.hdf5 import OLD
 from vibro_sweep.files.lock import locked
 from vibro_sweep.files.making import make
-from vibro_sweep.files.opening import END_BYTES, OLD, damage, foreign, open_file
+from vibro_sweep.files.opening import foreign, open_file
 from vibro_sweep.files.subject import (
     Complete,
     about_run,
@@ -25,6 +26,7 @@ from vibro_sweep.files.subject import (
     touch,
 )
 from vibro_sweep.files.sweep_file import SweepFile
+from vibro_sweep.files.verifying import END_BYTES, damage
 from vibro_sweep.tables.outcomes import NOT_COMPUTED
 
 

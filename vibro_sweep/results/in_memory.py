@@ -8,30 +8,17 @@ import numpy as np
 import xarray
 
 from vibro_sweep.results.boxes import Box
-from vibro_sweep.tables.outcomes import NOT_COMPUTED
+from vibro_sweep.results.statuses import Statuses
 
 
-class InMemory:
+class InMemory(Statuses):
     """The Dataset of a sweep with room for its numbers."""
 
     def __init__(self, data: xarray.Dataset):
         self.data = data.copy(data={name: np.array(one.values) for name, one in data.data_vars.items()})
         lists = {name: value for name, value in data.attrs.items() if isinstance(value, list) and len(value) == 1}
         self.data.attrs |= {name: value for name, (value,) in lists.items()}  # as xarray reads them
-        self._began = time.perf_counter()
-
-    @property
-    def status(self) -> np.ndarray:
-        """The statuses of all points."""
-        return self.data["status"].values
-
-    def missing(self, box: Box) -> bool:
-        """Whether an orbit in a box of the sweep is not computed yet."""
-        return bool((self.status[box] == NOT_COMPUTED).any())
-
-    def done(self) -> int:
-        """Orbits computed so far."""
-        return int(np.count_nonzero(self.status != NOT_COMPUTED))
+        self.status, self._began = self.data["status"].values, time.perf_counter()
 
     def write(self, box: Box, arrays: dict[str, np.ndarray]) -> None:
         """Keep a block."""
