@@ -174,8 +174,8 @@ def test_ctrl_c_at_any_moment_of_the_beginning(folder, compiled):
         assert process.returncode == 130, (k, error)
         *before, last = error
         assert last.startswith("vibro-sweep: interrupted"), (k, error)
-        # a quick machine has said by then that it compiles, how long that took and what the run will take
-        expected = r"vibro-sweep: (compiling kernels, once: .*|compiled \w+ in \d+ s|[\d,]+ orbits, about .* workers)"
+        # a quick machine has said by then that it compiles, and how long that took
+        expected = r"vibro-sweep: (compiling kernels, once: .*|compiled \w+ in \d+ s)"
         assert len(set(before)) == len(before) and all(re.fullmatch(expected, line) for line in before), (k, error)
         assert not Path(f"{output}.lock").exists()
 
@@ -220,14 +220,6 @@ def begun(folder, *options) -> subprocess.Popen:
     (folder / "long.yaml").write_text(SHORT.replace("transient: 2", "transient: 1.0e+9"))
     command = [*PROGRAM, "run", "long.yaml", "--workers", "2", *options]
     return subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
-
-
-def test_a_long_run_is_announced(folder):
-    process = begun(folder)
-    line = next(line for line in process.stderr if not line.startswith("vibro-sweep: compil"))
-    process.send_signal(signal.SIGINT)
-    assert re.fullmatch(r"vibro-sweep: 3 orbits, about .+ with 2 workers\n", line)
-    assert "interrupted" in process.communicate(timeout=LIMIT)[1] and process.returncode == 130
 
 
 @pytest.mark.slow

@@ -24,6 +24,7 @@ NUMBERLESS = {
     "driver/__init__.py",
     "driver/code_hash.py",
     "driver/cost.py",
+    "driver/memory_needed.py",
     "files/__init__.py",
     "files/making.py",
 }

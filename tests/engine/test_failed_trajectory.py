@@ -15,7 +15,7 @@ def test_it_says_nothing():
     """Its status says what went wrong; neither zeros nor what came before look like results."""
     text = f"system: {{{PAPER_NUMBERS}, b: 6.6}}\norbit: {{transient: 0, record: 1}}\n"
     text += "trajectory: {periods: 2, samples: 5}"
-    (block,) = blocks.blocks(parsed(text), 1)
+    (block,) = blocks.blocks(parsed(text), lambda: 1)
     table = points_of(block.parameters)
     results, kept = new_results((1, 1)), new_trajectories((1, 1), 5, 2, 5)
     results["status"], results["end"], results["resting"] = 0, (0.0, np.inf, 0.0, 0.0), 0.0

@@ -28,7 +28,7 @@ PLAIN = "import sys;" + BROKEN + "import test_jit; test_jit.save(sys.argv[1])"
 
 
 def arrays():
-    (block,) = blocks.blocks(parsed(SCENE), points_per_block=100)
+    (block,) = blocks.blocks(parsed(SCENE), lambda: 100)
     return compute.compute(block)[1]
 
 

@@ -74,7 +74,7 @@ def test_dask_processes_and_threads_agree(tmp_path, cluster, scene, whole):
     assert_same_bits(arrays_of(tmp_path / "dask.h5"), whole)
     assert all(worker.poll() is None for worker in workers)
     with vs.open(tmp_path / "dask.h5") as data:
-        assert json.loads(data.attrs["provenance"])["executor"] == "ClusterExecutor"
+        assert json.loads(data.attrs["provenance"])["executor"] == "ClientExecutor"
 
 
 @pytest.mark.slow
@@ -100,8 +100,7 @@ def stopped(cluster, path, output, stop):
     run = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
     cluster.wait(lambda: done(output))
     stop(run)
-    *estimate, error = run.communicate(timeout=LIMIT)[1].splitlines()
-    assert all("orbits, about" in line for line in estimate), estimate  # said where the machine is busy
+    (error,) = run.communicate(timeout=LIMIT)[1].splitlines()
     return run.returncode, error
 
 

@@ -9,8 +9,7 @@ from support.contents import arrays_of, assert_same_bits
 from support.scenes import ALL, EVERY, SCENES, run, scene_of
 
 import vibro_sweep as vs
-from vibro_sweep.driver import blocks, compute, cost, memory_needed, sweep
-from vibro_sweep.driver.measuring import OrbitCost
+from vibro_sweep.driver import blocks, compute, memory_needed, sweep
 from vibro_sweep.engine.one_system import points_of
 from vibro_sweep.scene.size import MAX_AT_ONCE, numbers_at_once
 
@@ -31,8 +30,9 @@ AGAIN = "compliant, follow", "compliant, force"
 
 
 def computed(scene, points, orbits):
-    """The scene's arrays by blocks of so many points and orbits, chains gone on with, put together in its order."""
-    todo, whole = list(blocks.blocks(scene, points, orbits)), {}
+    """The scene's arrays by blocks of up to so many points and orbits, chains gone on with, put together."""
+    rng = np.random.default_rng(points)
+    todo, whole = list(blocks.blocks(scene, lambda: int(rng.integers(1, points + 1)), orbits)), {}
     most = 0
     while todo:
         block = todo.pop()
@@ -96,7 +96,7 @@ def test_section_alone_computes_no_tangent(tmp_path):
     scene = scene_of(SCENES["random"].replace(ALL, "observe: [section]"))
     plan = blocks.plan_of(scene)
     assert not plan.lyapunov and plan.warm_up == 0
-    (block,) = blocks.blocks(scene, points_per_block=1000)
+    (block,) = blocks.blocks(scene, lambda: 1000)
     with ThreadPoolExecutor(1) as pool:  # a thread of its own, so that its workspace is new
         _, arrays = pool.submit(compute.compute, block).result()
         touched = pool.submit(lambda: compute._local.workspace.ensemble.tangent.tobytes().strip(b"\0")).result()
@@ -113,22 +113,6 @@ def test_few_large_blocks_at_a_time():
     assert memory_needed.orbits_per_block(large, 2) == 1
     assert memory_needed.blocks_under_way(large, 1, here=True) == 1
     assert memory_needed.blocks_under_way(small, memory_needed.orbits_per_block(small, 2), here=True) > 8
-
-
-def test_an_estimate_knows_what_runs_side_by_side(monkeypatch):
-    """Starts of a point, and up to eight chains in one direction, are one worker's."""
-    monkeypatch.setattr(cost, "orbit_cost", lambda *_: OrbitCost(1.0, [], 1.0))
-    monkeypatch.setattr(cost, "crowding", lambda *_: 3.0)
-    monkeypatch.setattr(cost.time, "perf_counter", lambda: 0.0)
-    monkeypatch.setattr(cost, "available_cores", lambda: 8)
-    one = scene_of("orbit: {transient: 0, record: 1}")
-    starts = scene_of("orbit: {transient: 0, record: 1}\nstart: {random: 5, seed: 1}")
-    chains = scene_of(SCENES["follow"])  # six of nine points, in two directions
-    assert (cost.estimate(one).alone, cost.estimate(one).seconds) == (1.0, 3.0)
-    assert cost.estimate(starts).alone == 5.0
-    directions = chains.n_starts
-    assert cost.estimate(chains).alone == chains.n_points / directions
-    assert cost.estimate(chains, workers=1).alone == chains.n_points
 
 
 def test_impacts_alone_need_no_memory_for_their_periods():

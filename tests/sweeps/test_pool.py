@@ -1,6 +1,7 @@
 """Blocks through executors of every kind: those that lose workers, grow, answer in any order, or break."""
 
 import contextlib
+import math
 import multiprocessing
 import pickle
 import random
@@ -12,16 +13,19 @@ import tracemalloc
 from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
 from itertools import islice
 
+import numpy as np
 import pytest
 from support import sample
 from support.contents import arrays_of, assert_same_bits
 from support.scenes import PAPER, SCENES, scene_of
 
 import vibro_sweep as vs
-from vibro_sweep.driver import blocks, cost, executors, memory_needed
+from vibro_sweep.driver import blocks, executors, memory_needed
+from vibro_sweep.driver.block_size import BlockSize
 from vibro_sweep.driver.compute import BlockError, compute
 from vibro_sweep.engine.records import result_of
 from vibro_sweep.engine.simd.lanes import LANES
+from vibro_sweep.results.boxes import boxes
 
 LIMIT = 60  # seconds after which something hangs
 CHAINS = 3 * LANES  # in three blocks, each way
@@ -156,14 +160,14 @@ def test_what_ends_a_run_loses_nothing(tmp_path, whole, error, attempts, words):
 
 
 def test_an_error_in_a_block_says_where(monkeypatch):
-    block = next(blocks.blocks(scene_of(SCENES["plane"]), points_per_block=3))
+    block = next(blocks.blocks(scene_of(SCENES["plane"]), lambda: 3))
     monkeypatch.setattr("vibro_sweep.driver.compute.table_of", lambda *_, **__: 1 / 0)
     with pytest.raises(BlockError, match=r"process \d+, failed at omega = 0.5, b = 0.3 .. 2.4\d*: ZeroDivisionError"):
         compute(block)
 
 
 def test_a_worker_with_other_code_refuses():
-    block = next(blocks.blocks(scene_of(SCENES["plane"]), points_per_block=3))
+    block = next(blocks.blocks(scene_of(SCENES["plane"]), lambda: 3))
     with pytest.raises(BlockError, match=r"has vibro_sweep .*; this program is vibro_sweep 9, code 0"):
         compute(block._replace(version="vibro_sweep 9, code 0"))
 
@@ -206,7 +210,7 @@ def test_a_huge_plane_is_planned_lazily():
     """The phase of grazing differs at each of its 16 million points; a megabyte of it is never held."""
     scene = scene_of(HUGE)
     tracemalloc.start()
-    planned = list(islice(blocks.blocks(scene, points_per_block=30), 1000))
+    planned = list(islice(blocks.blocks(scene, lambda: 30), 1000))
     compute(planned[-1]._replace(plan=planned[-1].plan._replace(transient=0, warm_up=0, record=1, parts=1)))
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
@@ -215,17 +219,40 @@ def test_a_huge_plane_is_planned_lazily():
         assert len(pickle.dumps(block)) < 1200 + 8 * (1 + 30)
 
 
-def test_size_of_a_block(monkeypatch):
+def grown(scene, seconds_of_a_point: float, workers: int, missing: int | None = None, asked: int | None = None):
+    """The sizes of 20 blocks, each computed before the next."""
+    size = BlockSize(scene, missing or scene.n_points, workers, 4.0, asked)
+    sizes = []
+    for _ in range(20):
+        sizes.append(size())
+        (block, *_) = islice(blocks.blocks(scene, lambda: sizes[-1]), 1)
+        size.learn(block, sizes[-1] * seconds_of_a_point)
+    return sizes
+
+
+def test_blocks_grow(monkeypatch):
     """By time, by memory, and such that all workers have some."""
     scene = scene_of(SCENES["plane"].replace("num: 5", "num: 5000").replace("num: 7", "num: 7000"))
-    assert cost.points_per_block(scene, 1e-3, 2, 4.0) == 4000
-    assert cost.points_per_block(scene, 10.0, 2, 4.0) == 1
+    assert grown(scene, 1e-3, 2)[:6] == [8, 32, 128, 512, 2048, 4000]
+    assert set(grown(scene, 10.0, 2)) == {8}
+    assert set(grown(scene, 1e-9, 2, asked=77)) == {72}  # whole eights
     each = 32 * scene.record + result_of(2).itemsize
-    assert 0.7 < cost.points_per_block(scene, 1e-9, 2, 4.0) * each / memory_needed.BLOCK_BYTES < 1
+    assert 0.7 < grown(scene, 1e-9, 2)[-1] * each / memory_needed.BLOCK_BYTES < 1
     monkeypatch.setattr(memory_needed, "available_cores", lambda: 2)
-    assert 0.7 < cost.points_per_block(scene, 1e-9, 1000, 4.0) * each / (memory_needed.BYTES_UNDER_WAY / 1000) < 1
+    assert 0.7 < grown(scene, 1e-9, 1000)[-1] * each / (memory_needed.BYTES_UNDER_WAY / 1000) < 1
     small = scene_of(SCENES["plane"])
-    assert cost.points_per_block(small, 1e-9, 1, 4.0) == 35 // cost.BLOCKS_PER_WORKER
+    assert set(grown(small, 1e-9, 1)) == {35 // 8} and set(grown(small, 1e-9, 1, missing=3)) == {1}
+
+
+@pytest.mark.parametrize("shape", [(), (7,), (5, 7), (3, 4, 5), (1, 9, 1), (6, 1, 4)])
+def test_boxes_of_any_sizes_are_the_grid(shape):
+    rng = np.random.default_rng(1)
+    for most in (1, 3, 8, 30, 1000):
+        begin, flat = int(rng.integers(math.prod(shape))), np.arange(math.prod(shape)).reshape(shape)
+        sizes = rng.integers(1, most + 1, flat.size).tolist()
+        found = list(boxes(shape, iter(sizes).__next__, begin))
+        assert [n for box in found for n in flat[box].ravel()] == list(range(begin if shape else 0, flat.size))
+        assert all(flat[box].size <= size for box, size in zip(found, sizes, strict=False))
 
 
 class Silent(Executor):

@@ -29,7 +29,7 @@ def test_they_are_between_the_stops(stops):
         system = vs.Oscillator.named("linear", b=float(rng.uniform(0.01, 1)), **numbers)
         given = {"sweep": {"b": [system.b]}, "start": {"random": 3, "seed": 1}, "transient": 0, "record": 1}
         scene = scene_from(changed({}, {"system": system, **given}), "sweep")
-        (block,) = blocks.blocks(scene, points_per_block=1)
+        (block,) = blocks.blocks(scene, lambda: 1)
         states, q = starts_of(block)[0], system.linear
         gaps = states[:, 0::2] @ q.normal
         slack = 1e-12 * np.abs(states).max()

@@ -22,9 +22,6 @@ if TYPE_CHECKING:
     from vibro_sweep.scene import Continuation, Scene
 
 
-BUSY = 1.3  # times longer than alone, from which on it is said what else runs
-
-
 def grazing_of(scene: "Scene | Continuation") -> str:
     """The output of `grazing`: of a sweep of one number on which the graze depends the curve."""
     from vibro_sweep.scene import Scene
@@ -76,15 +73,14 @@ def cost_text(cost: "Estimate") -> str:
     """The cost of a scene as `check` prints it."""
     from vibro_sweep.driver.cost import duration
 
-    busy = f" beside what else runs now, {duration(cost.alone)} alone" if cost.seconds > BUSY * cost.alone else ""
-    compiled = f"\n  compiled  in {duration(cost.compiling)} just now, once: no run needs it again" * bool(
-        cost.compiling
+    compiled = (
+        f"\n  compiled  in {duration(cost.compiling)} just now, once: no run needs it again" if cost.compiling else ""
     )
     longer = f"; up to {duration(cost.most)} if all orbits go on as far as `settle`" * (cost.most > cost.seconds)
     return (
-        f"  file      {points(cost.points)}, {size_of(cost.bytes)}\n"
+        f"  file      {points(cost.orbits)}, {size_of(cost.bytes)}\n"
         f"  work      {cost.orbits:,} orbits, {cost.periods:,} forcing periods in all\n"
-        f"  time      about {duration(cost.seconds)} here{busy}{longer}{compiled}"
+        f"  time      about {duration(cost.seconds)} here{longer}{compiled}"
     )
 
 

@@ -61,11 +61,11 @@ def _curve(shape: tuple[int, ...], size: int) -> Iterator[tuple[Box, np.ndarray]
     """
     if len(shape) == 2 and size < shape[1]:
         for row in range(shape[0]):
-            parts = [(slice(row, row + 1), *part) for part in boxes(shape[1:], size)]
+            parts = [(slice(row, row + 1), *part) for part in boxes(shape[1:], lambda: size)]
             for part in reversed(parts) if row % 2 else parts:
                 yield part, _order(part)
     else:
-        for part in boxes(shape, size):
+        for part in boxes(shape, lambda: size):
             yield part, _order(part)
 
 

@@ -1,6 +1,6 @@
 """Blocks: boxes of a sweep's grid that are computed as one, by any worker, in any order."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -98,18 +98,18 @@ def plan_of(scene: Scene) -> points.Plan:
     )
 
 
-def blocks(scene: Scene, points_per_block: int, most_orbits: int | None = None) -> Iterator[Block]:
-    """The scene cut into boxes, in the order of the file.
+def blocks(scene: Scene, size: Callable[[], int], most_orbits: int | None = None, begin: int = 0) -> Iterator[Block]:
+    """The scene cut into boxes of `size()` points, in the order of the file.
 
     most_orbits : in a block, where that asks for parts of a point. All starts of a point stay together where
-        attractors are sought among them. Of the chains of a `follow` these are the first parts; `next_part` has others.
+        attractors are sought among them. Of the chains of a `follow` these are the first parts; `next_part` has others
+    begin : number of the first point, or of the first chain of a `follow`
     """
-    shape, start, size = scene.sweep_shape, scene.start, points_per_block
-    follow = start.kind == "follow"
+    shape, start = scene.sweep_shape, scene.start
+    follow, length, least = start.kind == "follow", 1, 1
     if follow:
-        chains = min(LANES, most_orbits or LANES)  # so many take hardly longer than one
-        length = min(shape[0], most_orbits // chains) if most_orbits else shape[0]
-        size = max(size // length, chains)
+        least = min(LANES, most_orbits or LANES)  # so many chains take hardly longer than one
+        length = min(shape[0], most_orbits // least) if most_orbits else shape[0]
     starts = (start.count, start.seed) if start.kind == "random" else np.array([start.state])
     common = {
         "shape": shape,
@@ -124,7 +124,7 @@ def blocks(scene: Scene, points_per_block: int, most_orbits: int | None = None) 
         "expand_at": scene.expand_at,
         "version": version(),
     }
-    for rest in boxes(shape[int(follow) :], size):
+    for rest in boxes(shape[int(follow) :], lambda: max(size() // length, least), begin):
         for direction, reverse in _directions(scene):
             lead = () if not follow else ((slice(shape[0] - length, shape[0]) if reverse else slice(0, length)),)
             box = lead + rest

@@ -1,12 +1,13 @@
 """Jobs through an executor of any kind: in any order, a bounded number at a time, again where a worker has died."""
 
+import contextlib
 import os
 import queue
 import signal
 import threading
+import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import BrokenExecutor, CancelledError, Executor, ProcessPoolExecutor
-from contextlib import contextmanager
 from functools import partial
 from multiprocessing import get_context, parent_process
 from typing import Any
@@ -23,31 +24,38 @@ AHEAD = 2  # times as many of these as there are workers
 
 
 def worker_count(pool: Executor, default: int = 1) -> int:
-    """Jobs that an executor computes at a time, now: it may grow. mpi4py and `cluster` call it `num_workers`."""
+    """Jobs that an executor computes at a time, now: it may grow. mpi4py calls it `num_workers`."""
+    with contextlib.suppress(Exception):  # the scheduler may be away for a moment
+        return sum(pool._client.nthreads().values()) or default  # of Dask
     return getattr(pool, "num_workers", None) or getattr(pool, "_max_workers", None) or default
+
+
+def _is_gone(pool: Executor) -> bool:
+    """Whether it is of a Dask scheduler that has died. A job that was sent at that moment is never answered."""
+    return getattr(getattr(pool, "_client", None), "status", None) in ("closing", "closed")
 
 
 def completed(
     pool: Executor, function: Callable, following: Callable[[], Any], window: Callable[[], int]
-) -> Iterator[tuple[Any, Any]]:
-    """(job, function(job)), as they come; no more than `window()` jobs are under way.
+) -> Iterator[tuple[Any, Any, float]]:
+    """(job, function(job), seconds), as they come; no more than `window()` jobs are under way.
 
     following : the next job, or None where there is none before other results are there
     A job that is lost with its worker is sent again. Raises RunError where that does not help.
     """
     finished: queue.SimpleQueue = queue.SimpleQueue()
-    under_way = {}  # future: its job, and at which attempt
+    under_way = {}  # future: its job, at which attempt, and when it was sent
 
     def send(job: Any, attempt: int) -> None:
         try:
             future = pool.submit(function, job)
-        except RunError:
-            raise
         except BrokenExecutor as error:
             raise _given_up(job, attempt, error) from error
         except Exception as error:
+            if _is_gone(pool):
+                raise RunError(GIVEN_UP) from error
             raise RunError(f"the executor takes no more work ({type(error).__name__}: {error})") from error
-        under_way[future] = job, attempt
+        under_way[future] = job, attempt, time.monotonic()
         future.add_done_callback(finished.put)
 
     try:
@@ -59,13 +67,13 @@ def completed(
             try:
                 future = finished.get(timeout=PATIENCE)
             except queue.Empty:
-                if getattr(pool, "gone", False):
+                if _is_gone(pool):
                     raise RunError(GIVEN_UP) from None
                 continue
-            job, attempt = under_way.pop(future)
+            job, attempt, sent = under_way.pop(future)
             error = CancelledError() if future.cancelled() else future.exception()
             if error is None:
-                yield job, future.result()
+                yield job, future.result(), time.monotonic() - sent
             elif isinstance(error, FINAL) or attempt == ATTEMPTS:
                 raise _given_up(job, attempt, error) from error
             else:
@@ -88,7 +96,7 @@ def _given_up(job: Any, attempt: int, error: BaseException) -> RunError:
     return RunError(f"{attempt} attempts at {job} were lost with their workers ({reason})")
 
 
-@contextmanager
+@contextlib.contextmanager
 def workers_of(workers: int | None, executor: Executor | None) -> Iterator[Executor | None]:
     """The executor that computes: the caller's, processes of our own for several workers, or None: this process."""
     if executor is not None or workers in (None, 1):
@@ -150,7 +158,7 @@ def _results(function: Callable, pool: Executor | None, jobs: Iterator[tuple[str
     def following() -> list | None:
         return [job for _, job in zip(range(AT_ONCE), jobs, strict=False)] or None
 
-    for _, results in completed(pool, partial(_all, function), following, lambda: AHEAD * worker_count(pool)):
+    for _, results, _ in completed(pool, partial(_all, function), following, lambda: AHEAD * worker_count(pool)):
         yield from results
 
 

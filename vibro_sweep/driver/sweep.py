@@ -1,6 +1,5 @@
 """From a scene to its file: blocks of points, computed by an executor, handed to the store as they come."""
 
-import logging
 from collections import deque
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, ThreadPoolExecutor
@@ -12,24 +11,14 @@ import numpy as np
 
 from vibro_sweep.driver import MOST_WORKERS
 from vibro_sweep.driver.attractor_ids import following, number_attractors
+from vibro_sweep.driver.block_size import BlockSize
 from vibro_sweep.driver.blocks import Block, blocks, next_part, whole_chains
 from vibro_sweep.driver.compute import CHAIN_ENDS, compute
-from vibro_sweep.driver.cost import (
-    BLOCK_SECONDS,
-    crowding,
-    duration,
-    longest,
-    orbit_cost,
-    points_per_block,
-    run_seconds,
-    side_by_side,
-    threads_of,
-)
 from vibro_sweep.driver.executors import completed, worker_count
 from vibro_sweep.driver.memory_needed import available_cores, blocks_under_way, orbits_per_block
 from vibro_sweep.driver.progress import given_or_bar
 from vibro_sweep.driver.provenance import provenance
-from vibro_sweep.engine.halting import heed, interruptible, new_halt
+from vibro_sweep.engine.halting import heed, new_halt
 from vibro_sweep.files.subject import Complete, check_mode, now
 from vibro_sweep.files.sweep_file import SweepFile
 from vibro_sweep.files.sweep_runs import sweep_run
@@ -39,12 +28,10 @@ from vibro_sweep.model.refusals import not_allowed
 from vibro_sweep.results import layout
 from vibro_sweep.results.in_memory import InMemory
 from vibro_sweep.scene import Scene
-from vibro_sweep.tables.outcomes import VALID, status_of
+from vibro_sweep.tables.outcomes import NOT_COMPUTED, VALID, status_of
 
-_log = logging.getLogger("vibro_sweep")
-
-WORTH_SAYING = 10.0  # seconds that a run will take from which on that is said before
-SECONDS = 4.0  # of a block that an executor computes
+BLOCK_SECONDS = 1.0  # of a thread's block: long enough for its overhead not to count, short enough to lose
+SENT_SECONDS = 4.0  # of one that an executor computes
 
 
 @dataclass
@@ -148,21 +135,13 @@ def _results(
 ) -> Iterator[tuple]:
     """Results of all blocks, of so many points, with one of the missing orbits, as they come."""
     count = workers if executor is None else worker_count(executor, workers)
-    cost = interruptible(orbit_cost, scene, count)
+    size = BlockSize(scene, missing, count, BLOCK_SECONDS if executor is None else SENT_SECONDS, points)
     orbits = orbits_per_block(scene, count)
     most = blocks_under_way(scene, orbits, here=executor is None)
     halt = new_halt()
     pool = executor or ThreadPoolExecutor(min(workers, most), initializer=heed, initargs=(halt,))
-    size = points_per_block(scene, cost.seconds, count, BLOCK_SECONDS if executor is None else SECONDS, points)
-    if executor is None:
-        seconds = run_seconds(scene, cost, missing, count)
-        seconds *= interruptible(crowding, cost, threads_of(scene, count)) if seconds > WORTH_SAYING else 1.0
-    else:  # on machines of which nothing is known
-        seconds = cost.seconds * missing / side_by_side(scene, count)
-    if seconds > WORTH_SAYING:
-        more = f", up to {duration(seconds * longest(scene))} to settle" if scene.settle else ""
-        _log.info("%s orbits, about %s with %s workers%s", f"{missing:,}", duration(seconds), count, more)
-    todo = (block for block in blocks(scene, size, orbits) if file.missing(whole_chains(block)))
+    cut = blocks(scene, size, orbits, _first_missing(scene, file.status))
+    todo = (block for block in cut if file.missing(whole_chains(block)))
     parts: deque[Block] = deque()  # which go on with the chains of others
 
     def next_block() -> Block | None:
@@ -172,7 +151,8 @@ def _results(
         return min(worker_count(pool, workers), most)
 
     try:
-        for block, (box, arrays) in completed(pool, compute, next_block, window):
+        for block, (box, arrays), seconds in completed(pool, compute, next_block, window):
+            size.learn(block, seconds)
             if not block.last:
                 parts.append(next_part(scene, block, arrays.pop(CHAIN_ENDS)))
             if file.missing(box):  # parts of chains may only lead to the one that is missing
@@ -181,6 +161,16 @@ def _results(
         if executor is None:
             halt[0] = 1
             pool.shutdown(wait=False, cancel_futures=True)
+
+
+def _first_missing(scene: Scene, status: np.ndarray) -> int:
+    """Number of the first point, or chain of a `follow`, of which an orbit is not computed."""
+    missing = status == NOT_COMPUTED
+    if missing.ndim > len(scene.sweep_shape):
+        missing = missing.any(axis=-1)
+    if scene.start.kind == "follow":
+        missing = missing.any(axis=0)
+    return int(np.argmax(missing))
 
 
 def _how(scene: Scene, threads: int | None, executor: Executor | None) -> dict:

@@ -1,28 +1,29 @@
 """Boxes of a grid of points, in the order of its arrays."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
 Box = tuple[slice, ...]
 
 
-def boxes(shape: tuple[int, ...], size: int) -> Iterator[Box]:
-    """An array of this shape cut into boxes of at most `size` entries, in order.
+def boxes(shape: tuple[int, ...], size: Callable[[], int], begin: int = 0) -> Iterator[Box]:
+    """An array of this shape cut into boxes of at most `size()` entries, in order, from entry `begin` on.
 
-    A box has whole trailing axes, then a part of one, then single values.
+    A box has single values, then a part of an axis, then whole axes. The size of each is asked for when it is cut.
     """
-    lengths = list(shape)
-    for axis in reversed(range(len(shape))):
-        lengths[axis] = max(1, min(shape[axis], size))
-        size //= shape[axis]
-    counts = [-(-extent // length) for extent, length in zip(shape, lengths, strict=True)]
-    for n in range(math.prod(counts)):  # itertools.product would hold all of them along an axis
-        corner = [int(at) * length for at, length in zip(np.unravel_index(n, counts), lengths, strict=True)]
-        yield tuple(
-            slice(at, min(at + length, extent)) for at, length, extent in zip(corner, lengths, shape, strict=True)
-        )
+    if not shape:
+        yield ()
+        return
+    step = [math.prod(shape[axis + 1 :]) for axis in range(len(shape))]  # entries behind a value of an axis
+    while begin < math.prod(shape):
+        most, corner = max(1, size()), [int(at) for at in np.unravel_index(begin, shape)]
+        cut = next(axis for axis, behind in enumerate(step) if behind <= most and begin % behind == 0)
+        length = min(most // step[cut], shape[cut] - corner[cut])
+        single = (slice(at, at + 1) for at in corner[:cut])
+        yield (*single, slice(corner[cut], corner[cut] + length), *(slice(0, extent) for extent in shape[cut + 1 :]))
+        begin += length * step[cut]
 
 
 def stretches(shape: tuple[int, ...], box: Box) -> Iterator[tuple[tuple[int, ...], int]]:
