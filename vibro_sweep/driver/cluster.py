@@ -54,12 +54,16 @@ def _wait_for_workers(client: Client) -> None:
     except (OSError, RuntimeError) as error:
         raise ClusterError(f"the scheduler has died ({error})") from None
     died = {address for address, answer in answers.items() if isinstance(answer, OSError)}  # meanwhile
-    wrong = [f"{name} has {_told(told)}" for name, told in answers.items() if told != version() and name not in died]
+    wrong = [
+        f"{name} has {_described(answer)}"
+        for name, answer in answers.items()
+        if answer != version() and name not in died
+    ]
     if wrong:
         raise ClusterError(f"worker {'; worker '.join(wrong)}. This program is {version()}: install the same on all")
 
 
-def _told(answer: str | Exception) -> str:
+def _described(answer: str | Exception) -> str:
     """What a worker has."""
     if isinstance(answer, str):
         return answer

@@ -16,7 +16,7 @@ from vibro_sweep.files.checksum import checksums
 from vibro_sweep.files.disk import faults_said, to_disk, write_all
 from vibro_sweep.files.file_errors import StoreError
 from vibro_sweep.files.hdf5 import CHECKS
-from vibro_sweep.files.verifying import end_record, is_verified, wrong_points
+from vibro_sweep.files.verifying import end_record
 from vibro_sweep.results.boxes import Box, stretches
 from vibro_sweep.results.statuses import Statuses
 from vibro_sweep.tables.outcomes import NOT_COMPUTED
@@ -28,7 +28,8 @@ KEPT = "what was computed until then is kept: `resume` continues it"
 class SweepFile(Statuses):
     """The file of a sweep, to be filled by one process. All methods raise StoreError where the disk fails."""
 
-    def __init__(self, path: Path):
+    def __init__(self, path: Path, again: np.ndarray | None = None):
+        """again : points (bool) that are to be computed again"""
         self.path, self._began, self._written = path, time.perf_counter(), time.monotonic()
         with h5py.File(path, "r") as h5:
             names = [name for name in h5[CHECKS] if name != "end"]
@@ -38,14 +39,10 @@ class SweepFile(Statuses):
             }
             self.names = names
             self.status = np.array(h5["status"][()])
-            damaged = np.zeros(self.status.shape, bool)
-            for name in names:
-                if is_verified(h5, name):
-                    damaged |= wrong_points(h5, name)
         self._descriptor = os.open(path, os.O_RDWR | getattr(os, "O_BINARY", 0))
         self._waiting: list[tuple[Box, np.ndarray]] = []  # statuses of numbers that may not be on the disk yet
-        if damaged.any():
-            self.status[damaged] = NOT_COMPUTED
+        if again is not None:
+            self.status[again] = NOT_COMPUTED
             self._put("status", (), self.status)
 
     def write(self, box: Box, arrays: dict[str, np.ndarray]) -> None:

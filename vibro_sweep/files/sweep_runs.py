@@ -26,7 +26,7 @@ from vibro_sweep.files.subject import (
     touch,
 )
 from vibro_sweep.files.sweep_file import SweepFile
-from vibro_sweep.files.verifying import END_BYTES, damage
+from vibro_sweep.files.verifying import END_BYTES, damaged_points, in_words, unreadable
 from vibro_sweep.tables.outcomes import NOT_COMPUTED
 
 
@@ -47,27 +47,29 @@ def sweep_run(
     """
     check_outputs(path, mode, inputs)
     with locked(path):
-        there = os.path.lexists(path)
+        there, again = os.path.lexists(path), None
         if there and mode != "overwrite":
-            found = _look(data, path, mode, made_by)
-            if found is not None:
-                yield found
+            again = _look(data, path, mode, made_by)
+            if isinstance(again, Complete):
+                yield again
                 return
         else:
             check_space(size, path)
             _make(data, following, path, made_by, replaces=there)
-        with contextlib.closing(SweepFile(path)) as file:
+        with contextlib.closing(SweepFile(path, again)) as file:
             yield file
 
 
-def _look(data: xarray.Dataset, path: Path, mode: str, made_by: Mapping[str, Any]) -> Complete | None:
-    """A file that needs no run, which is as new then; None for one that goes on. Raises StoreError for any other."""
+def _look(data: xarray.Dataset, path: Path, mode: str, made_by: Mapping[str, Any]) -> Complete | np.ndarray | None:
+    """A file that needs no run, which is as new then; of one that goes on the points (bool) that are damaged, if any.
+    Raises StoreError for any other."""
     try:
         with open_file(path) as old:
             check_same(old.attrs, data.attrs, path)
             if not old.encoding["sealed"]:
                 raise StoreError(f"{foreign(path)}; no run continues it")
-            lacking = _lacking(old)
+            damaged = damaged_points(old)
+            lacking = _lacking(old, damaged)
             if mode == "new" or lacking:
                 check_version(old.attrs, made_by, path)
             if not lacking:
@@ -82,12 +84,12 @@ def _look(data: xarray.Dataset, path: Path, mode: str, made_by: Mapping[str, Any
         raise StoreError(f"{told}; `overwrite` replaces it, or name another file\n{error}") from None
     if mode == "new":
         raise StoreError(f"{path} {lacking}; `resume` computes that, `overwrite` begins anew")
-    return None
+    return np.logical_or.reduce([*damaged.values()]) if damaged else None
 
 
-def _lacking(old: xarray.Dataset) -> str:
+def _lacking(old: xarray.Dataset, damaged: dict[str, np.ndarray]) -> str:
     """What `resume` computes of a file, in words; empty where nothing is."""
-    if found := damage(old):
+    if found := in_words(damaged) or unreadable(old):
         return f"is damaged: {found}"
     if not old.encoding["complete"]:
         missing = int(np.count_nonzero(old["status"].values == NOT_COMPUTED))

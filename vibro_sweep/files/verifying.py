@@ -44,18 +44,35 @@ def verify(data: xarray.Dataset, names: Iterable[str] | None = None) -> None:
 
 def damage(data: xarray.Dataset, names: Iterable[str] | None = None) -> str:
     """The variables of a file, of some or of all, whose numbers are not those that were written, in words."""
-    if not data.encoding["sealed"]:
-        return ""
+    return in_words(damaged_points(data, names)) or unreadable(data, names)
+
+
+def in_words(damaged: dict[str, np.ndarray]) -> str:
+    """Which variables are damaged, and at how many points."""
+    counts = {name: int(np.count_nonzero(wrong)) for name, wrong in damaged.items()}
+    return ", ".join(f"{name} at {count:,} point{'s' * (count > 1)}" for name, count in counts.items())
+
+
+def damaged_points(data: xarray.Dataset, names: Iterable[str] | None = None) -> dict[str, np.ndarray]:
+    """The points (bool, the shape of the sweep) at which the numbers of variables are not those that were written: of
+    some or of all variables, those that are damaged. Other files than those of sweeps have one seal of the whole."""
+    if not data.encoding["sealed"] or data.attrs["format"] == OLD or data.attrs["kind"] != SWEEP:
+        return {}
     names = [str(name) for name in data.data_vars] if names is None else [*names]
-    if data.attrs["format"] == OLD:
-        return ", ".join(f"{name} cannot be read" for name in names if not _can_be_read(data, name))
-    if data.attrs["kind"] != SWEEP:
-        return ""  # its seal is of the whole file
     with h5py.File(data.encoding["source"], "r") as h5:
-        if data.encoding["complete"] and np.any(h5["status"][()] == NOT_COMPUTED):
-            return "status"
-        found = {name: int(np.count_nonzero(wrong_points(h5, name))) for name in names if is_verified(h5, name)}
-    return ", ".join(f"{name} at {count:,} point{'s' * (count > 1)}" for name, count in found.items() if count)
+        lost = h5["status"][()] == NOT_COMPUTED
+        if data.encoding["complete"] and lost.any():
+            return {"status": lost}
+        found = {name: wrong_points(h5, name) for name in names if is_verified(h5, name)}
+    return {name: wrong for name, wrong in found.items() if wrong.any()}
+
+
+def unreadable(data: xarray.Dataset, names: Iterable[str] | None = None) -> str:
+    """Of a file of format 2, whose checksums HDF5 looks at: which variables cannot be read."""
+    if not data.encoding["sealed"] or data.attrs["format"] != OLD:
+        return ""
+    names = [str(name) for name in data.data_vars] if names is None else names
+    return ", ".join(f"{name} cannot be read" for name in names if not _can_be_read(data, name))
 
 
 def _can_be_read(data: xarray.Dataset, name: str) -> bool:
