@@ -26,6 +26,18 @@ def test_a_part_of_a_joined_dataset(sweeps):
     assert [(one.lo, one.hi) for one in first] == [(one.lo, one.hi) for one in same] != []
 
 
+@pytest.mark.parametrize("unit", [1e-9, 1e9])
+def test_what_belongs_to_another_oscillator_is_seen_in_any_unit_of_length(unit):
+    numbers = {"M": [[1]], "K": [[1]], "C": [[0.1]], "force": [unit], "contact_normal": [1]}
+    machine = vs.Oscillator(**numbers, omega=0.8, b=unit, R=0.2, tau=0)
+    values = unit * np.linspace(0.8, 1, 4)
+    both = [vs.sweep(machine.replace(R=R), {"b": values}, transient=500, record=50) for R in (0.2, 0.8)]
+    joined = xarray.concat(both, dim="R")
+    assert len(vs.windows(joined.isel(R=0)))
+    with pytest.raises(ValueError, match="is not one of the oscillator that the attributes and the scene describe"):
+        vs.windows(joined.isel(R=1))
+
+
 def test_a_coordinate_that_contradicts_an_attribute(sweeps):
     joined = xarray.concat(sweeps, dim="R").assign_coords(R=[0.2, 0.8])
     with pytest.raises(ValueError, match=r"R: the coordinate says 0\.8 and the attribute 0\.2; they must agree"):
