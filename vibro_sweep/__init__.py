@@ -17,7 +17,7 @@ For annotations
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from vibro_sweep.model import notices
+from vibro_sweep.checks import notices
 
 __version__ = "0.3.0.dev0"
 
@@ -61,6 +61,8 @@ if TYPE_CHECKING:
     from vibro_sweep.analysis.periodic.lcp import born_at_grazing
     from vibro_sweep.analysis.single.discontinuity_map import discontinuity_map
     from vibro_sweep.analysis.single.orbit import lyapunov, simulate
+    from vibro_sweep.checks.errors import VibroSweepError
+    from vibro_sweep.checks.refusals import ParameterError
     from vibro_sweep.driver.any_file import open
     from vibro_sweep.driver.compute import RunError
     from vibro_sweep.driver.from_python import sweep
@@ -69,24 +71,22 @@ if TYPE_CHECKING:
     from vibro_sweep.driver.windows import windows
     from vibro_sweep.files.file_errors import StoreError
     from vibro_sweep.live.served_page import explore
-    from vibro_sweep.model.errors import VibroSweepError
     from vibro_sweep.model.general import Oscillator
     from vibro_sweep.model.grazing import grazing
     from vibro_sweep.model.oscillator import System
-    from vibro_sweep.model.refusals import ParameterError
     from vibro_sweep.plotting import PlotError
     from vibro_sweep.plotting.front import plot
     from vibro_sweep.scene import SceneError, load_scene
 else:
     _HOME = {
         "Oscillator": "model.general",
-        "ParameterError": "model.refusals",
+        "ParameterError": "checks.refusals",
         "PlotError": "plotting",
         "RunError": "driver.compute",
         "SceneError": "scene",
         "StoreError": "files.file_errors",
         "System": "model.oscillator",
-        "VibroSweepError": "model.errors",
+        "VibroSweepError": "checks.errors",
         "bifurcation_curve": "analysis.curves.bifurcation_curve",
         "born_at_grazing": "analysis.periodic.lcp",
         "continue_orbit": "analysis.branches.branch",

@@ -7,34 +7,25 @@ from support import ROOT
 
 HOME = ROOT / "vibro_sweep"
 ALLOWED = {
-    "tables": set(),
-    "model": {"tables"},
-    "engine": {"tables", "model"},
-    "analysis": {"tables", "model", "engine", "results", "plotting", "driver"},
-    "scene": {"tables", "model", "driver"},
-    "results": {"tables", "model", "scene"},
-    "files": {"tables", "model", "scene", "results"},
-    "driver": {"tables", "model", "engine", "analysis", "scene", "files", "results"},
-    "plotting": {"tables", "model", "files", "results"},
-    "live": {"tables", "model", "engine", "analysis", "scene", "files", "results", "driver", "plotting"},
-    "cli": {"tables", "model", "engine", "scene", "files", "results", "driver", "plotting", "live"},
-    "types": {"tables", "model", "analysis", "scene", "driver", "live"},
+    "checks": set(),
+    "tables": {"checks"},
+    "model": {"checks", "tables"},
+    "engine": {"checks", "tables", "model"},
+    "analysis": {"checks", "tables", "model", "engine", "results", "plotting", "driver"},
+    "scene": {"checks", "tables", "model", "driver"},
+    "results": {"checks", "tables", "model", "scene"},
+    "files": {"checks", "tables", "model", "scene", "results"},
+    "driver": {"checks", "tables", "model", "engine", "analysis", "scene", "files", "results"},
+    "plotting": {"checks", "tables", "model", "files", "results"},
+    "live": {"checks", "tables", "model", "engine", "analysis", "scene", "files", "results", "driver", "plotting"},
+    "cli": {"checks", "tables", "model", "engine", "scene", "files", "results", "driver", "plotting", "live"},
+    "types": {"checks", "tables", "model", "analysis", "scene", "driver", "live"},
 }
 # of analysis/: in this order
 FLOORS = ["single", "attractors", "periodic", "continuation", "branches", "curves", "windows"]
 EVERYWHERE = {"__version__"}
-# of model/: names, checks of arguments, and the force of a stop, which follows from stored samples
-WITHOUT_PHYSICS = {
-    "arguments",
-    "catalogue",
-    "contact_laws",
-    "errors",
-    "files",
-    "real",
-    "refusals",
-    "stop_force",
-    "stops",
-}
+# of model/: names, and the force of a stop, which follows from stored samples
+WITHOUT_PHYSICS = {"catalogue", "contact_laws", "stop_force", "stops"}
 
 
 def imported(path):

@@ -252,9 +252,9 @@ def models(
     name: Annotated[str | None, typer.Argument(metavar="[NAME]", help="Of a model or a law of contact.")] = None,
 ):
     """What oscillators and laws of contact there are; of one the equations, a sketch, its numbers."""
+    from vibro_sweep.checks.refusals import ParameterError
     from vibro_sweep.model.contact_laws import LAWS
     from vibro_sweep.model.models import model_named
-    from vibro_sweep.model.refusals import ParameterError
 
     from .summaries import law_text, model_list, model_text
 

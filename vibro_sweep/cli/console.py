@@ -97,7 +97,7 @@ def input_errors(*kinds: type[Exception]) -> Iterator[None]:
 
 
 def _refused(error: Exception) -> int:
-    from vibro_sweep.model.refusals import cut  # `--help` must not wait for numpy
+    from vibro_sweep.checks.refusals import cut  # `--help` must not wait for numpy
 
     text = str(error) or ("not enough memory" if isinstance(error, MemoryError) else type(error).__name__)
     if isinstance(error, OSError) and error.filename is not None and error.strerror:

@@ -5,7 +5,7 @@ import json
 import re
 from pathlib import Path
 
-from vibro_sweep.model.errors import VibroSweepError
+from vibro_sweep.checks.errors import VibroSweepError
 
 SCHEMA = "scene.schema.json"
 HOME = Path(__file__).parents[1]

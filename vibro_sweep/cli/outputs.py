@@ -9,9 +9,9 @@ from .console import InputError, input_errors
 
 def check_output(output: Path, inputs: Collection[Path], picture: Path | None, mode: str) -> None:
     """Raise InputError or StoreError, before anything is computed, where results could not be written in the end."""
+    from vibro_sweep.checks.file_names import file_to_write
     from vibro_sweep.files.file_errors import StoreError
     from vibro_sweep.files.subject import check_outputs
-    from vibro_sweep.model.files import file_to_write
 
     try:
         file_to_write("--output", str(output))

@@ -3,8 +3,8 @@
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from vibro_sweep.checks.file_names import FileError, checked_path, read_bytes
 from vibro_sweep.files.reading import open_whole
-from vibro_sweep.model.files import FileError, checked_path, read_bytes
 
 if TYPE_CHECKING:
     import xarray

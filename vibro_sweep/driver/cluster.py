@@ -8,8 +8,8 @@ from concurrent.futures import Executor
 from distributed import Client
 from distributed.comm import get_address_host_port
 
+from vibro_sweep.checks.errors import VibroSweepError
 from vibro_sweep.driver.blocks import version
-from vibro_sweep.model.errors import VibroSweepError
 
 CONNECT_SECONDS, JOIN_SECONDS = 5, 60
 WORDY = ("distributed", "distributed.client", "concurrent.futures", "tornado.application")  # errors say it in one line

@@ -20,6 +20,7 @@ HOME = Path(__file__).parents[1]
 
 # All modules that a scene's text passes through to become numbers; what moves, stores or shows these is left out.
 SOURCES = (
+    "checks",
     "tables",
     "model",
     "engine",

@@ -8,6 +8,7 @@ import numpy as np
 
 from vibro_sweep.analysis.attractors import grouping
 from vibro_sweep.analysis.single.tables import table_of
+from vibro_sweep.checks.errors import VibroSweepError
 from vibro_sweep.driver.blocks import Block, version
 from vibro_sweep.driver.drawn_starts import starts_of
 from vibro_sweep.driver.energy_columns import energies_of
@@ -17,7 +18,6 @@ from vibro_sweep.engine.any_points import grazing_points
 from vibro_sweep.engine.motion.ensemble import Mapping
 from vibro_sweep.engine.records import Kind, new_results, starts_after, starts_at
 from vibro_sweep.engine.simd.lanes import LANES
-from vibro_sweep.model.errors import VibroSweepError
 from vibro_sweep.model.grazing import expansion_point
 from vibro_sweep.model.grid import linears
 from vibro_sweep.model.own_time import in_own_time, in_users_time, with_velocities

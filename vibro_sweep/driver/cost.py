@@ -7,12 +7,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numba.core import event
 
+from vibro_sweep.checks.arguments import checked_count
 from vibro_sweep.driver import MOST_WORKERS
 from vibro_sweep.driver.blocks import blocks
 from vibro_sweep.driver.compute import compute
 from vibro_sweep.driver.memory_needed import available_cores
 from vibro_sweep.engine.simd.lanes import LANES
-from vibro_sweep.model.arguments import checked_count
 from vibro_sweep.results import layout
 from vibro_sweep.scene import Scene
 

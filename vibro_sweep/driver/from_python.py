@@ -6,23 +6,23 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
+from vibro_sweep.checks.arguments import accepts, check_type
+from vibro_sweep.checks.errors import ArgumentError, ArgumentTypeError
+from vibro_sweep.checks.file_names import file_to_write
+from vibro_sweep.checks.real import number_of
+from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.driver.any_file import open
 from vibro_sweep.driver.provenance import provenance
 from vibro_sweep.driver.sweep import check_how, fill, run_sweep
 from vibro_sweep.files.subject import about_run
 from vibro_sweep.model.any_oscillator import AnyOscillator
-from vibro_sweep.model.arguments import accepts, check_type, checked_state
 from vibro_sweep.model.built import Built
-from vibro_sweep.model.errors import ArgumentError, ArgumentTypeError
-from vibro_sweep.model.files import file_to_write
 from vibro_sweep.model.oscillator import checked_system
-from vibro_sweep.model.real import number_of
-from vibro_sweep.model.refusals import not_allowed
 from vibro_sweep.results import layout
 from vibro_sweep.results.in_memory import InMemory
 from vibro_sweep.scene import Section, Start, Trajectory, scene_of
 from vibro_sweep.scene.written import axis_data, changed
-from vibro_sweep.tables.coordinates import START
+from vibro_sweep.tables.coordinates import START, checked_state
 
 if TYPE_CHECKING:
     import numpy as np

@@ -14,6 +14,8 @@ from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit, orbit_of
 from vibro_sweep.analysis.windows.members import solution_in
 from vibro_sweep.analysis.windows.unvisited import Unvisited
 from vibro_sweep.analysis.windows.window import Window, Windows
+from vibro_sweep.checks.errors import ArgumentError
+from vibro_sweep.checks.file_names import checked_path
 from vibro_sweep.driver.any_file import first_bytes
 from vibro_sweep.driver.joining import columns_in_file, part_of
 from vibro_sweep.driver.saved_results import ONE, Saved
@@ -21,8 +23,6 @@ from vibro_sweep.driver.source_file import computed_from
 from vibro_sweep.files.file_errors import StoreError
 from vibro_sweep.files.opening import PART
 from vibro_sweep.files.reading import sweep_in
-from vibro_sweep.model.errors import ArgumentError
-from vibro_sweep.model.files import checked_path
 from vibro_sweep.results import ragged_dataset
 from vibro_sweep.results.sweep_dataset import Sweep
 from vibro_sweep.scene import parse_continuation, parse_scene

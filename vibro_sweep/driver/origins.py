@@ -22,13 +22,13 @@ from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit, orbit_of
 from vibro_sweep.analysis.windows.members import solution_in
 from vibro_sweep.analysis.windows.rows import Row
 from vibro_sweep.analysis.windows.window_search import RowWindow, WindowSearch
+from vibro_sweep.checks.refusals import cut, shown
 from vibro_sweep.driver.joining import part_of
 from vibro_sweep.driver.source_file import SourceError, run_id_of
 from vibro_sweep.driver.windows import rows_in, search_of
 from vibro_sweep.files.pieces import Pieces
 from vibro_sweep.files.reading import sweep_in
 from vibro_sweep.model.any_oscillator import AnyOscillator
-from vibro_sweep.model.refusals import cut, shown
 from vibro_sweep.results.sweep_dataset import Sweep
 from vibro_sweep.scene import Continuation, parse_continuation, parse_scene
 from vibro_sweep.tables.bifurcations import CURVES, WAYS

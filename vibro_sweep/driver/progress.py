@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable, Iterator
 from shutil import get_terminal_size
 
-from vibro_sweep.model import notices
+from vibro_sweep.checks import notices
 
 _log = logging.getLogger("vibro_sweep")
 

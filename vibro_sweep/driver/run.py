@@ -8,14 +8,14 @@ from typing import Literal
 
 import numpy as np
 
+from vibro_sweep.checks.arguments import check_type, checked_count
+from vibro_sweep.checks.errors import ArgumentError
+from vibro_sweep.checks.file_names import file_to_write
+from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.driver.progress import given_or_bar
 from vibro_sweep.driver.run_continuation import run_continuation
 from vibro_sweep.driver.sweep import RunReport, check_how, run_sweep
 from vibro_sweep.files.opening import open_file
-from vibro_sweep.model.arguments import check_type, checked_count
-from vibro_sweep.model.errors import ArgumentError
-from vibro_sweep.model.files import file_to_write
-from vibro_sweep.model.refusals import not_allowed
 from vibro_sweep.scene import Continuation, Scene
 from vibro_sweep.tables.bifurcations import CODIMENSION_TWO, TYPES
 from vibro_sweep.tables.file_columns import CHART

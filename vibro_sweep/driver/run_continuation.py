@@ -4,6 +4,7 @@ from collections.abc import Callable
 from concurrent.futures import Executor
 from pathlib import Path
 
+from vibro_sweep.checks.file_names import file_to_write
 from vibro_sweep.driver.executors import workers_of
 from vibro_sweep.driver.followed_branches import followed_branches
 from vibro_sweep.driver.followed_curves import followed_curves
@@ -13,7 +14,6 @@ from vibro_sweep.driver.source_file import computed_from_source
 from vibro_sweep.driver.swept_plane import plane_of
 from vibro_sweep.files.pieces import pieces_run
 from vibro_sweep.files.subject import Complete
-from vibro_sweep.model.files import file_to_write
 from vibro_sweep.results import ragged_dataset
 from vibro_sweep.scene import Continuation
 from vibro_sweep.tables.file_columns import BRANCHES, CHART

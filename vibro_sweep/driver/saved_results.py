@@ -13,16 +13,16 @@ from vibro_sweep.analysis.branches.branch import Branch
 from vibro_sweep.analysis.curves import curve_arrays
 from vibro_sweep.analysis.curves.bifurcation_curve import BifurcationCurve
 from vibro_sweep.analysis.windows.window import Windows
+from vibro_sweep.checks.errors import ArgumentError
+from vibro_sweep.checks.file_names import ExistingFileError, file_to_write
+from vibro_sweep.checks.refusals import ParameterError
 from vibro_sweep.driver.joining import columns_in_file, joined
 from vibro_sweep.driver.origins import Source, attributes_of
 from vibro_sweep.driver.provenance import provenance
 from vibro_sweep.files.making import make
 from vibro_sweep.files.subject import about_run, check_outputs
 from vibro_sweep.model.any_oscillator import AnyOscillator
-from vibro_sweep.model.errors import ArgumentError
-from vibro_sweep.model.files import ExistingFileError, file_to_write
 from vibro_sweep.model.linear import Family
-from vibro_sweep.model.refusals import ParameterError
 from vibro_sweep.results import ragged_dataset
 from vibro_sweep.scene import Continuation
 from vibro_sweep.tables.bifurcations import CURVES

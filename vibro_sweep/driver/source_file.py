@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vibro_sweep.checks.arguments import check_type
+from vibro_sweep.checks.errors import VibroSweepError
+from vibro_sweep.checks.file_names import FileError
 from vibro_sweep.files.file_errors import StoreError
 from vibro_sweep.files.reading import sweep_in
-from vibro_sweep.model.arguments import check_type
 from vibro_sweep.model.built import BUILD
-from vibro_sweep.model.errors import VibroSweepError
-from vibro_sweep.model.files import FileError
 from vibro_sweep.results.sweep_dataset import Sweep
 from vibro_sweep.scene import Continuation, parse_scene
 from vibro_sweep.tables.file_columns import SWEEP

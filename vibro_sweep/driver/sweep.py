@@ -9,6 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
+from vibro_sweep.checks.arguments import check_call
+from vibro_sweep.checks.errors import ArgumentError, ArgumentTypeError
+from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.driver import MOST_WORKERS
 from vibro_sweep.driver.attractor_ids import following, number_attractors
 from vibro_sweep.driver.block_size import BlockSize
@@ -22,9 +25,6 @@ from vibro_sweep.engine.halting import heed, new_halt
 from vibro_sweep.files.subject import Complete, check_mode, now
 from vibro_sweep.files.sweep_file import SweepFile
 from vibro_sweep.files.sweep_runs import sweep_run
-from vibro_sweep.model.arguments import check_call
-from vibro_sweep.model.errors import ArgumentError, ArgumentTypeError
-from vibro_sweep.model.refusals import not_allowed
 from vibro_sweep.results import layout
 from vibro_sweep.results.in_memory import InMemory
 from vibro_sweep.scene import Scene

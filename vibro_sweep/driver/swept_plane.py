@@ -8,9 +8,9 @@ import numpy as np
 from vibro_sweep.analysis.windows.edges import Plane, ends_of
 from vibro_sweep.analysis.windows.explained import Explained
 from vibro_sweep.analysis.windows.rows import check_data
+from vibro_sweep.checks.refusals import cut
 from vibro_sweep.driver.source_file import SourceError
 from vibro_sweep.files.reading import sweep_in
-from vibro_sweep.model.refusals import cut
 from vibro_sweep.scene import Continuation, parse_scene
 from vibro_sweep.tables.coordinates import state
 

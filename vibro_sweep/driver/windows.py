@@ -16,6 +16,10 @@ from vibro_sweep.analysis.windows.rows import Row, check_data, chosen_key, rows_
 from vibro_sweep.analysis.windows.unvisited import unvisited_in
 from vibro_sweep.analysis.windows.window import Windows, in_file_order, windows_of
 from vibro_sweep.analysis.windows.window_search import WindowSearch
+from vibro_sweep.checks.arguments import check_type
+from vibro_sweep.checks.errors import ArgumentError
+from vibro_sweep.checks.file_names import checked_path, file_to_write
+from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.driver.executors import kept, workers_of
 from vibro_sweep.driver.joining import columns_in_file, joined
 from vibro_sweep.driver.progress import given_or_bar
@@ -24,10 +28,6 @@ from vibro_sweep.driver.source_file import SourceError, run_id_of, swept
 from vibro_sweep.driver.sweep import check_how
 from vibro_sweep.files.pieces import Pieces, pieces_run
 from vibro_sweep.files.subject import Complete
-from vibro_sweep.model.arguments import check_type
-from vibro_sweep.model.errors import ArgumentError
-from vibro_sweep.model.files import checked_path, file_to_write
-from vibro_sweep.model.refusals import not_allowed
 from vibro_sweep.results import ragged_dataset
 from vibro_sweep.results.sweep_dataset import Sweep
 from vibro_sweep.scene import parse_scene

@@ -8,11 +8,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.engine.motion.free import find_contacts, find_extremes
 from vibro_sweep.engine.one_system import Engine
 from vibro_sweep.engine.variational.propagator import fly, new_workspace
 from vibro_sweep.model.any_oscillator import AnyOscillator
-from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.oscillator import checked_system
 from vibro_sweep.model.sensitivity import motion
 

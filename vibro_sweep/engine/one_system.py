@@ -4,6 +4,8 @@ import sys
 
 import numpy as np
 
+from vibro_sweep.checks.errors import ArgumentError
+from vibro_sweep.checks.refusals import ParameterError
 from vibro_sweep.engine import points
 from vibro_sweep.engine.any_points import any_points, kind_of
 from vibro_sweep.engine.compliant.law import LOGGED
@@ -14,9 +16,7 @@ from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.tables import cells
 from vibro_sweep.engine.tables.flight import Flight
 from vibro_sweep.engine.variational.spectrum import BATCHES
-from vibro_sweep.model.arguments import checked_state
 from vibro_sweep.model.contact import is_far
-from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.invariant_planes import moved
 from vibro_sweep.model.linear import stacked
 from vibro_sweep.model.metric import ROUNDING
@@ -24,9 +24,9 @@ from vibro_sweep.model.models.two_mass import NAMES
 from vibro_sweep.model.modes import modes
 from vibro_sweep.model.oscillator import System
 from vibro_sweep.model.own_time import in_own_time, with_velocities
-from vibro_sweep.model.refusals import ParameterError
 from vibro_sweep.model.stops import has_compliant
 from vibro_sweep.tables import outcomes as status
+from vibro_sweep.tables.coordinates import checked_state
 
 IMPACT = np.dtype([("t", float), ("side", np.int8), ("v1", float), ("x2", float), ("v2", float)])
 

@@ -17,18 +17,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from vibro_sweep.checks.arguments import is_number
+from vibro_sweep.checks.errors import ArgumentError
+from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.engine.one_system import Engine
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.variational.grazing_map import Expansion, iterate
 from vibro_sweep.engine.variational.parameter_sensitivity import Equations, differentiate
 from vibro_sweep.engine.variational.propagator import new_workspace
 from vibro_sweep.model.any_oscillator import AnyOscillator
-from vibro_sweep.model.arguments import is_number
-from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.linear import Linear, gap_response, rigid_family_of
 from vibro_sweep.model.models.two_mass import NAMES
 from vibro_sweep.model.oscillator import System, checked_system
-from vibro_sweep.model.refusals import not_allowed
 from vibro_sweep.model.sensitivity import grazing_state, grazing_state_slopes, motion, motion_slopes
 from vibro_sweep.tables import outcomes as status
 

@@ -1,7 +1,7 @@
 """What is wrong with a file, in one message that names it."""
 
-from vibro_sweep.model.errors import VibroSweepError
-from vibro_sweep.model.files import MissingFileError
+from vibro_sweep.checks.errors import VibroSweepError
+from vibro_sweep.checks.file_names import MissingFileError
 
 
 class StoreError(VibroSweepError, ValueError):

@@ -10,11 +10,11 @@ import h5py
 import numpy as np
 import xarray
 
+from vibro_sweep.checks.refusals import cut
 from vibro_sweep.files.file_errors import MissingError, StoreError
 from vibro_sweep.files.hdf5 import FORMAT, OLD
 from vibro_sweep.files.seal import SealError, is_sealed
 from vibro_sweep.files.verifying import end_of
-from vibro_sweep.model.refusals import cut
 from vibro_sweep.tables.file_columns import SWEEP
 
 NETCDF = "_NCProperties"  # the attribute by which a netCDF library says that it has made the file

@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import xarray
 
+from vibro_sweep.checks.file_names import checked_path
 from vibro_sweep.files.file_errors import StoreError
 from vibro_sweep.files.opening import foreign, open_file
 from vibro_sweep.files.verifying import verify
-from vibro_sweep.model.files import checked_path
 from vibro_sweep.results import ragged_dataset
 from vibro_sweep.results.sweep_dataset import Sweep
 from vibro_sweep.tables.file_columns import SWEEP

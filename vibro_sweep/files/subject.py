@@ -11,10 +11,10 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from vibro_sweep import __version__
+from vibro_sweep.checks.refusals import cut, not_allowed
 from vibro_sweep.files.disk import obstacle, same_file
 from vibro_sweep.files.file_errors import StoreError
 from vibro_sweep.files.hdf5 import FORMAT
-from vibro_sweep.model.refusals import cut, not_allowed
 from vibro_sweep.scene import SceneError, parse_continuation, parse_scene
 from vibro_sweep.scene.differences import differences
 from vibro_sweep.tables.file_columns import BRANCHES, CHART

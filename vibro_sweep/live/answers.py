@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.live.clicked_orbit import Settled, orbit_message, settled
 from vibro_sweep.live.frames import Frame, frames
 from vibro_sweep.live.messages import binary_message, number, text_message
@@ -14,7 +15,6 @@ from vibro_sweep.live.requests import ClickedOrbit, OfOneOrbit, Open, Save, Swee
 from vibro_sweep.live.saved_view import hdf5_of, python_of, svg_of
 from vibro_sweep.live.views import base_of, height_of, needed, scene_of_view, view_of
 from vibro_sweep.live.window_ends import window_message
-from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.grazing import grazing
 from vibro_sweep.scene import Scene
 

@@ -10,10 +10,10 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
+from vibro_sweep.checks.errors import VibroSweepError
 from vibro_sweep.live.answers import Answers, Message
 from vibro_sweep.live.messages import text_message
 from vibro_sweep.live.requests import Request, Save, Sweep, WindowEnds
-from vibro_sweep.model.errors import VibroSweepError
 
 MOST_UNSENT = 4  # messages of a page, after which it gets no turn
 MOST_WORDS = 2000  # letters of an error

@@ -3,7 +3,7 @@
 import contextlib
 from collections.abc import Iterator
 
-from vibro_sweep.model.errors import VibroSweepError
+from vibro_sweep.checks.errors import VibroSweepError
 
 PACKAGES = ("starlette", "uvicorn", "websockets")
 

@@ -6,14 +6,14 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
+from vibro_sweep.checks.arguments import check_type
+from vibro_sweep.checks.errors import ArgumentError
+from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.driver.block_columns import columns_of, draft_of, whole_block
 from vibro_sweep.driver.blocks import Block, blocks, next_part
 from vibro_sweep.driver.compute import CHAIN_ENDS, compute
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.live.pace import Pace
-from vibro_sweep.model.arguments import check_type
-from vibro_sweep.model.errors import ArgumentError
-from vibro_sweep.model.refusals import not_allowed
 from vibro_sweep.results.layout import quantities
 from vibro_sweep.scene import Scene
 

@@ -6,8 +6,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.driver.sweep import run_sweep
-from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.plotting import figure
 from vibro_sweep.plotting.pictures import save
 from vibro_sweep.results.layout import size

@@ -4,14 +4,14 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from vibro_sweep.checks.arguments import checked_interval, checked_word
+from vibro_sweep.checks.errors import ArgumentError, ArgumentTypeError
+from vibro_sweep.checks.file_names import checked_path
+from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.live.extra import needed
 from vibro_sweep.live.presets import described_sweep, scene_of_results, scene_to_explore
 from vibro_sweep.live.views import COLUMNS, span
 from vibro_sweep.model.any_oscillator import AnyOscillator
-from vibro_sweep.model.arguments import checked_interval, checked_word
-from vibro_sweep.model.errors import ArgumentError, ArgumentTypeError
-from vibro_sweep.model.files import checked_path
-from vibro_sweep.model.refusals import not_allowed
 from vibro_sweep.scene import Scene, scene_of
 from vibro_sweep.scene.written import changed
 

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.live.requests import View
 from vibro_sweep.model.any_oscillator import AnyOscillator
-from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.scene import Scene, scene_of
 from vibro_sweep.scene.written import data_of
 from vibro_sweep.tables.coordinates import state

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from vibro_sweep.checks.arguments import check_type
+from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.model.any_oscillator import AnyOscillator
-from vibro_sweep.model.arguments import check_type
-from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.linear import Family, Linear
 from vibro_sweep.model.models.declaration import Model
 from vibro_sweep.tables.quantity import Parameter

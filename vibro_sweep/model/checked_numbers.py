@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from vibro_sweep.model.real import array_of, number_of
-from vibro_sweep.model.refusals import ParameterError
+from vibro_sweep.checks.real import array_of, number_of
+from vibro_sweep.checks.refusals import ParameterError
 from vibro_sweep.tables.parameters import CLEARANCE
 from vibro_sweep.tables.quantity import NUMBER, POSITIVE, Parameter, Range
 from vibro_sweep.tables.units import SI, Units

@@ -10,14 +10,14 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
+from vibro_sweep.checks.real import array_of, number_of
+from vibro_sweep.checks.refusals import ParameterError
 from vibro_sweep.model import wording
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.checked_numbers import UNITS_ALLOWED, checked_number, units_from
 from vibro_sweep.model.linear import Family, Linear
 from vibro_sweep.model.models import MODELS, model_named
 from vibro_sweep.model.models.declaration import Model, Option, linear_of
-from vibro_sweep.model.real import array_of, number_of
-from vibro_sweep.model.refusals import ParameterError
 from vibro_sweep.model.stops import check_stops, completed
 from vibro_sweep.tables.coordinates import MOST_MASSES
 from vibro_sweep.tables.quantity import LENGTHS, Parameter

@@ -14,9 +14,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from vibro_sweep.checks.errors import ArgumentError, ArgumentTypeError
+from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.model.contact_laws.compliant import LAW as COMPLIANT
-from vibro_sweep.model.errors import ArgumentError, ArgumentTypeError
-from vibro_sweep.model.refusals import not_allowed
 from vibro_sweep.model.stacks import least_squares
 from vibro_sweep.model.steady import gap_responses, grazing_phases, responses, static_states, steady_amplitudes
 from vibro_sweep.model.stops import NUMBERS, stop_of, why_rigid

@@ -9,8 +9,10 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
+from vibro_sweep.checks.arguments import check_type
+from vibro_sweep.checks.real import number_of
+from vibro_sweep.checks.refusals import ParameterError
 from vibro_sweep.model.any_oscillator import AnyOscillator
-from vibro_sweep.model.arguments import check_type
 from vibro_sweep.model.checked_numbers import UNITS_ALLOWED, checked_number, range_of, units_from
 from vibro_sweep.model.contact_laws import OTHER_STOPS
 from vibro_sweep.model.contact_laws.rigid import RESTITUTION, RESTITUTION_LEFT
@@ -19,8 +21,6 @@ from vibro_sweep.model.linear import Family
 from vibro_sweep.model.models.declaration import OF_STOPS, STOPS, Model
 from vibro_sweep.model.models.two_mass import MODEL, PARAMETERS
 from vibro_sweep.model.modes import Modes, modes
-from vibro_sweep.model.real import number_of
-from vibro_sweep.model.refusals import ParameterError
 from vibro_sweep.model.stops import check_stops, completed
 from vibro_sweep.tables.parameters import CLEARANCE, OFFSET
 from vibro_sweep.tables.quantity import NOT_NEGATIVE, POSITIVE, Parameter

@@ -3,10 +3,10 @@
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
+from vibro_sweep.checks.refusals import ParameterError
 from vibro_sweep.model.contact_laws import LAWS, RIGID, STOP_NUMBERS
 from vibro_sweep.model.contact_laws.compliant import LAW as COMPLIANT
 from vibro_sweep.model.contact_laws.contact_law import ContactLaw
-from vibro_sweep.model.refusals import ParameterError
 
 NUMBERS = tuple(one.name for one in STOP_NUMBERS)
 RIGID_ALONE = (

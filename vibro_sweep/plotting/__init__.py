@@ -12,8 +12,8 @@ import matplotlib
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from vibro_sweep.model.errors import ArgumentTypeError
-from vibro_sweep.model.refusals import not_allowed, shown
+from vibro_sweep.checks.errors import ArgumentTypeError
+from vibro_sweep.checks.refusals import not_allowed, shown
 from vibro_sweep.plotting import (
     basins,
     branch_diagram,

@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 from matplotlib.lines import Line2D
 
-from vibro_sweep.model.refusals import shown
+from vibro_sweep.checks.refusals import shown
 from vibro_sweep.plotting import joined, sweeps
 from vibro_sweep.plotting.decades import scale_of
 from vibro_sweep.plotting.labels import arrange, legend_below, name_beside

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from vibro_sweep.model.refusals import shown
+from vibro_sweep.checks.refusals import shown
 from vibro_sweep.plotting import planes
 from vibro_sweep.plotting.drawn_curves import Drawn, draw, handles, name_points, scale
 from vibro_sweep.plotting.labels import arrange, legend_below

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any, overload
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from vibro_sweep.model.arguments import check_type, checked_flag
-from vibro_sweep.model.errors import ArgumentError
-from vibro_sweep.model.files import checked_path, file_to_write
-from vibro_sweep.model.real import array_of, number_of
-from vibro_sweep.model.refusals import not_allowed
+from vibro_sweep.checks.arguments import check_type, checked_flag
+from vibro_sweep.checks.errors import ArgumentError
+from vibro_sweep.checks.file_names import checked_path, file_to_write
+from vibro_sweep.checks.real import array_of, number_of
+from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.plotting import PlotError, PlotOptions, check_suffix, figure
 from vibro_sweep.plotting.pictures import check_output, save
 from vibro_sweep.tables.picture_kinds import Plottable

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vibro_sweep.model.real import number_of
-from vibro_sweep.model.refusals import not_allowed
+from vibro_sweep.checks.real import number_of
+from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.plotting.page import Picture, page, style_of
 from vibro_sweep.plotting.source import PlotError
 

@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vibro_sweep.checks.refusals import cut
 from vibro_sweep.files.file_errors import StoreError
 from vibro_sweep.files.reading import open_whole
-from vibro_sweep.model.refusals import cut
 from vibro_sweep.plotting.source import PlotError, name_of, readable
 from vibro_sweep.results.ragged_dataset import check
 from vibro_sweep.tables.bifurcations import KINDS, TYPES

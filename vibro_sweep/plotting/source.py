@@ -5,11 +5,11 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from vibro_sweep.checks.errors import ArgumentTypeError, VibroSweepError
+from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.files.file_errors import StoreError
 from vibro_sweep.files.opening import open_file
 from vibro_sweep.files.reading import sweep_in
-from vibro_sweep.model.errors import ArgumentTypeError, VibroSweepError
-from vibro_sweep.model.refusals import not_allowed
 from vibro_sweep.results.sweep_dataset import Sweep
 from vibro_sweep.tables.file_columns import SWEEP
 

@@ -6,10 +6,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from vibro_sweep.checks.real import number_of
+from vibro_sweep.checks.refusals import not_allowed, shown
 from vibro_sweep.files.file_errors import StoreError
 from vibro_sweep.model.catalogue import OF_A_SYSTEM
-from vibro_sweep.model.real import number_of
-from vibro_sweep.model.refusals import not_allowed, shown
 from vibro_sweep.model.stops import NUMBERS, compliance_of
 from vibro_sweep.plotting.panel import Panel
 from vibro_sweep.plotting.plot_options import PlotOptions

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import xarray
 
-from vibro_sweep.model.refusals import cut, shown
+from vibro_sweep.checks.refusals import cut, shown
 from vibro_sweep.results.described import described
 from vibro_sweep.tables.file_columns import BRANCHES, CHART, OF_EDGES, RAGGED, WINDOWS, columns
 from vibro_sweep.tables.quantity import Quantity

@@ -6,10 +6,10 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from vibro_sweep.checks.arguments import checked_count
+from vibro_sweep.checks.refusals import ParameterError, cut, not_allowed
 from vibro_sweep.model import wording
 from vibro_sweep.model.any_oscillator import AnyOscillator
-from vibro_sweep.model.arguments import checked_count
-from vibro_sweep.model.refusals import ParameterError, cut, not_allowed
 
 from .continue_form import ORIGINS
 from .fields import Form

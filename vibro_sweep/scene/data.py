@@ -5,8 +5,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from vibro_sweep.model.real import MOST, NO_NUMBERS, as_array, number_of
-from vibro_sweep.model.refusals import hint_for, shown
+from vibro_sweep.checks.real import MOST, NO_NUMBERS, as_array, number_of
+from vibro_sweep.checks.refusals import hint_for, shown
 
 DEEPEST = 8  # lists and mappings within each other; a scene has four
 

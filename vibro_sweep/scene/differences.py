@@ -4,7 +4,7 @@ import difflib
 from itertools import takewhile, zip_longest
 from operator import eq
 
-from vibro_sweep.model.refusals import LONGEST, cut
+from vibro_sweep.checks.refusals import LONGEST, cut
 
 MOST = 8  # lines
 BEFORE = LONGEST // 3  # letters of a long line before the first one that differs

@@ -10,7 +10,7 @@ from typing import Annotated, Literal, get_args
 
 from pydantic import ConfigDict, Discriminator, Field, Strict, Tag, WithJsonSchema, create_model
 
-from vibro_sweep.model.arguments import MAX_COUNT
+from vibro_sweep.checks.arguments import MAX_COUNT
 from vibro_sweep.model.built import Built
 from vibro_sweep.model.models import DEFAULT, MODELS
 from vibro_sweep.model.models.declaration import Model

@@ -7,8 +7,8 @@ from itertools import islice
 
 from pydantic import ValidationError
 
-from vibro_sweep.model.errors import VibroSweepError
-from vibro_sweep.model.refusals import LONGEST, cut, shown
+from vibro_sweep.checks.errors import VibroSweepError
+from vibro_sweep.checks.refusals import LONGEST, cut, shown
 from vibro_sweep.tables.observables import WORDS
 
 from . import slips

@@ -6,8 +6,8 @@ import re
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from vibro_sweep.model.real import number_of
-from vibro_sweep.model.refusals import cut
+from vibro_sweep.checks.real import number_of
+from vibro_sweep.checks.refusals import cut
 
 PHYSICAL = ("M1", "M2", "K1", "K2", "C1", "C2", "P1", "P2", "Omega", "B", "B0")
 NONDIMENSIONAL = (

@@ -2,13 +2,13 @@
 
 import numpy as np
 
+from vibro_sweep.checks.refusals import ParameterError, cut
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.checked_numbers import check_value
 from vibro_sweep.model.general import Oscillator
 from vibro_sweep.model.models import DEFAULT, MODELS
 from vibro_sweep.model.models.declaration import OF_STOPS, entries
 from vibro_sweep.model.oscillator import System
-from vibro_sweep.model.refusals import ParameterError, cut
 from vibro_sweep.tables.coordinates import START
 from vibro_sweep.tables.quantity import Parameter
 

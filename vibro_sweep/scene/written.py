@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from vibro_sweep.checks.refusals import shown
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.built import Built
 from vibro_sweep.model.models import DEFAULT
-from vibro_sweep.model.refusals import shown
 from vibro_sweep.tables.coordinates import START, start, state
 from vibro_sweep.tables.observables import WORDS
 

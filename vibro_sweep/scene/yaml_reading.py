@@ -3,7 +3,7 @@
 import os
 from pathlib import Path
 
-from vibro_sweep.model.files import checked_path, read_bytes
+from vibro_sweep.checks.file_names import checked_path, read_bytes
 
 from .problems import SceneError
 from .yaml_text import MAX_BYTES

@@ -2,9 +2,15 @@
 
 import functools
 
+import numpy as np
+
+from vibro_sweep.checks.errors import ArgumentError
+from vibro_sweep.checks.real import array_of
+from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.tables.quantity import Parameter, Quantity
 
 MOST_MASSES = 16
+_COUNTS = {2: "two", 4: "four", 6: "six"}
 
 
 @functools.cache
@@ -41,3 +47,12 @@ INITIAL = tuple(
     Parameter(START[one.name], f"initial {one.label.split()[0]}", f"{one.text} at t = 0", f"{one.symbol}(0)", one.units)
     for one in coordinates(MOST_MASSES)
 )
+
+
+def checked_state(given, masses: int = 2, name: str = "state") -> np.ndarray:
+    """A state (x1, v1, x2, v2, ...) as an array (2 N,). Raises ValueError unless it is so many finite numbers."""
+    values, names = array_of(given, 1), state(masses)
+    if values is None or values.shape != (len(names),) or not np.isfinite(values).all():
+        count = _COUNTS.get(len(names), str(len(names)))
+        raise ArgumentError(not_allowed(name, given, f"{count} finite numbers ({', '.join(names)})"))
+    return values

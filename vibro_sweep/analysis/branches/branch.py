@@ -27,10 +27,10 @@ from vibro_sweep.analysis.periodic.orbit_portrait import portrait
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.analysis.single.result import FileResult
-from vibro_sweep.model.arguments import check_call, check_type, checked_count, checked_interval, checked_word
-from vibro_sweep.model.errors import ArgumentError
+from vibro_sweep.checks.arguments import check_call, check_type, checked_count, checked_interval, checked_word
+from vibro_sweep.checks.errors import ArgumentError
+from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.model.linear import family_of
-from vibro_sweep.model.refusals import not_allowed
 
 if TYPE_CHECKING:
     import xarray

@@ -10,7 +10,7 @@ from vibro_sweep.analysis.continuation.solution_curve import branch_through
 from vibro_sweep.analysis.continuation.starting_orbit import keeps_symmetry
 from vibro_sweep.analysis.periodic.joined_contacts import contacts_are_one
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.model.errors import ArgumentError, VibroSweepError
+from vibro_sweep.checks.errors import ArgumentError, VibroSweepError
 
 BESIDE = (1e-4, 1e-5, 1e-6, 1e-7, 1e-8)  # in units of the curve; near the onset of sticking branches are short
 FARTHER = (1e-3, 1e-2)  # beside a fold so flat that Newton's method stands still only there

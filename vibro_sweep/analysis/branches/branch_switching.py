@@ -15,9 +15,9 @@ from vibro_sweep.analysis.periodic.joined_contacts import contacts_are_one, with
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit, found_orbit
 from vibro_sweep.analysis.periodic.seeds_of_free_motion import touches_of_free_motion, with_touches
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.model.arguments import check_type
-from vibro_sweep.model.errors import ArgumentError
-from vibro_sweep.model.refusals import not_allowed
+from vibro_sweep.checks.arguments import check_type
+from vibro_sweep.checks.errors import ArgumentError
+from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.tables.bifurcations import BY_NAME, WAYS
 
 BESIDE = 1e-4  # relative distance of the parameter from a graze

@@ -11,9 +11,9 @@ from vibro_sweep.analysis.branches.seeds import packed, seed_of
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.continuation.starting_orbit import Start
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
-from vibro_sweep.model.arguments import check_call, check_type, checked_count
-from vibro_sweep.model.errors import ArgumentError
-from vibro_sweep.model.refusals import not_allowed
+from vibro_sweep.checks.arguments import check_call, check_type, checked_count
+from vibro_sweep.checks.errors import ArgumentError
+from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.tables.bifurcations import WAYS
 
 

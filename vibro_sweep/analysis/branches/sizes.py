@@ -5,9 +5,9 @@ import math
 import numpy as np
 
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.model.errors import ArgumentError
-from vibro_sweep.model.real import number_of
-from vibro_sweep.model.refusals import not_allowed
+from vibro_sweep.checks.errors import ArgumentError
+from vibro_sweep.checks.real import number_of
+from vibro_sweep.checks.refusals import not_allowed
 
 STEPS = (0.01, 10.0)  # factors of the lengths of steps: shorter ones fill the points of a branch, longer ones fail
 WIDEST = 1e12  # times the size of a number: in wider bounds steps would be rounding

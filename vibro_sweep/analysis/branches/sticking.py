@@ -15,8 +15,8 @@ from vibro_sweep.analysis.continuation.solution_curve import NoPlaneError, Solut
 from vibro_sweep.analysis.continuation.starting_orbit import Start
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution
+from vibro_sweep.checks.arguments import check_type
 from vibro_sweep.engine.continuation.workspace import FIRST, Place
-from vibro_sweep.model.arguments import check_type
 
 SHORTEST_CHATTER = 7  # impacts on one stop, the one that appears among them
 EARLIER = 1.0, 1.3, 0.0  # by how much the sequence may end before the graze: times since the acceleration has vanished

@@ -10,12 +10,12 @@ from vibro_sweep.analysis.continuation.point import Point
 from vibro_sweep.analysis.continuation.starting_orbit import Start, keeps_symmetry
 from vibro_sweep.analysis.periodic.contact_numbers import Units, compliant_stops, one_plus_R
 from vibro_sweep.analysis.periodic.solution import Solution
+from vibro_sweep.checks.errors import VibroSweepError
 from vibro_sweep.engine.continuation import path, stepper
 from vibro_sweep.engine.continuation.curve_tests import TOUCHING
 from vibro_sweep.engine.continuation.moving_flow import OMEGA
 from vibro_sweep.engine.continuation.problem import GRAZE, STICK, Problem, unknowns
 from vibro_sweep.engine.continuation.workspace import TEST, Place, new_workspace
-from vibro_sweep.model.errors import VibroSweepError
 from vibro_sweep.model.linear import Family
 
 LONGEST_STEP, SHORTEST_STEP = 0.05, 1e-11

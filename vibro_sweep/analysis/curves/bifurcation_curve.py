@@ -25,14 +25,14 @@ from vibro_sweep.analysis.curves.curve_start import start_at
 from vibro_sweep.analysis.periodic.one_thread import one_thread
 from vibro_sweep.analysis.periodic.orbit_portrait import portrait
 from vibro_sweep.analysis.single.result import FileResult
+from vibro_sweep.checks.arguments import check_call, check_type, checked_flag, checked_interval
+from vibro_sweep.checks.errors import ArgumentError
+from vibro_sweep.checks.real import array_of
+from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.engine.continuation.curve_tests import TOUCHING
 from vibro_sweep.engine.continuation.problem import GRAZE
 from vibro_sweep.engine.continuation.workspace import TEST, Place
-from vibro_sweep.model.arguments import check_call, check_type, checked_flag, checked_interval
-from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.linear import family_of
-from vibro_sweep.model.real import array_of
-from vibro_sweep.model.refusals import not_allowed
 
 if TYPE_CHECKING:
     import xarray

@@ -9,7 +9,7 @@ from vibro_sweep.analysis.branches.special import SpecialPoint, bare, inserted, 
 from vibro_sweep.analysis.continuation.starting_orbit import KINDS, Start, keeps_symmetry
 from vibro_sweep.analysis.periodic.periodic_orbit import orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.model.errors import ArgumentError
+from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.tables.bifurcations import BIRTHS
 
 SLOW = 1e-9  # impulse, in parts of the gap's size times omega, below which an impact is a graze

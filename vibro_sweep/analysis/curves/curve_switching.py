@@ -18,9 +18,9 @@ from vibro_sweep.analysis.curves.curve_start import as_special, slow_impacts
 from vibro_sweep.analysis.periodic.linearised import Linearised
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution
+from vibro_sweep.checks.arguments import check_type
+from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.engine.continuation.workspace import THETA
-from vibro_sweep.model.arguments import check_type
-from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.tables.bifurcations import CODIMENSION_TWO, name_of
 
 SINGULAR = 1e-8  # least singular value of G(mu), of its largest, below which mu is a multiplier

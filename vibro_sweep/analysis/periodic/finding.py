@@ -12,12 +12,13 @@ from vibro_sweep.analysis.periodic.from_itinerary import from_itinerary
 from vibro_sweep.analysis.periodic.from_state import from_guess, from_state
 from vibro_sweep.analysis.periodic.itinerary import SIDES, word
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
+from vibro_sweep.checks.arguments import checked_count
+from vibro_sweep.checks.errors import ArgumentError
+from vibro_sweep.checks.real import array_of
+from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.engine.impulses.free_modes import ResonanceError, TooStiffError, without_orbit
-from vibro_sweep.model.arguments import checked_count, checked_state
-from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.linear import family_of
-from vibro_sweep.model.real import array_of
-from vibro_sweep.model.refusals import not_allowed
+from vibro_sweep.tables.coordinates import checked_state
 
 MOST_PERIODS = 10**6
 MOST_IMPACTS = 1000  # of an itinerary: each has thousands of seeds

@@ -19,13 +19,13 @@ from vibro_sweep.analysis.periodic.itinerary import canonical_start
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit, found_orbit
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.analysis.periodic.steady_gap import steady_gap
+from vibro_sweep.checks.arguments import checked_count
+from vibro_sweep.checks.errors import ArgumentError
+from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.engine.impulses import flights
 from vibro_sweep.engine.impulses.flow import closing, flow
 from vibro_sweep.engine.impulses.free_modes import has_free_gap
-from vibro_sweep.model.arguments import checked_count
-from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.linear import Linear, forcing_period, rigid_family_of
-from vibro_sweep.model.refusals import not_allowed
 
 BESIDE = (1e-4, 1e-5, 1e-6, 1e-7)  # distances from b*, over the amplitude of the gap, at which an orbit is confirmed
 NEAR = 0.1  # relative difference of the impulses there from those of lowest order

@@ -10,15 +10,15 @@ import numpy as np
 
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit, orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
+from vibro_sweep.checks.arguments import check_type, checked_count
+from vibro_sweep.checks.errors import ArgumentError
+from vibro_sweep.checks.file_names import ExistingFileError, FileError, checked_path, file_to_write, read_bytes
+from vibro_sweep.checks.real import array_of, number_of
+from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.engine.impulses.free_modes import ResonanceError, TooStiffError, without_orbit
-from vibro_sweep.model.arguments import check_type, checked_count
-from vibro_sweep.model.errors import ArgumentError
-from vibro_sweep.model.files import ExistingFileError, FileError, checked_path, file_to_write, read_bytes
 from vibro_sweep.model.general import Oscillator
 from vibro_sweep.model.linear import family_of
 from vibro_sweep.model.oscillator import System
-from vibro_sweep.model.real import array_of, number_of
-from vibro_sweep.model.refusals import not_allowed
 
 FORMAT = "vibro_sweep periodic orbit 2"
 WITHOUT_CHECKSUM = "vibro_sweep periodic orbit 1"

@@ -15,12 +15,12 @@ from vibro_sweep.analysis.periodic.itinerary import canonical_start, word
 from vibro_sweep.analysis.periodic.orbit_multipliers import squared
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.analysis.single.result import Result, event_table, shows_force
+from vibro_sweep.checks.arguments import LATEST, checked_times
+from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.engine.impulses import flights
 from vibro_sweep.engine.impulses.flow import constrained_flow, contact_coordinates, contact_flow, flow
 from vibro_sweep.engine.impulses.free_modes import ResonanceError, without_orbit
 from vibro_sweep.engine.one_system import CONTACT, IMPACT, STICKING, impact_of
-from vibro_sweep.model.arguments import LATEST, checked_times
-from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.general import Oscillator
 from vibro_sweep.model.linear import Family, family_of, forcing_period
 from vibro_sweep.model.oscillator import System

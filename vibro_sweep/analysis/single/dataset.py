@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from vibro_sweep.analysis.single.result import columns_of
-from vibro_sweep.model.errors import ArgumentError
+from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.model.linear import Linear
 from vibro_sweep.model.models.declaration import UNITS
 from vibro_sweep.model.stop_force import force_of

@@ -3,13 +3,13 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
+from vibro_sweep.checks.errors import ArgumentError
+from vibro_sweep.checks.real import number_of
+from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.engine.period_map import PeriodMap
 from vibro_sweep.model.any_oscillator import AnyOscillator
-from vibro_sweep.model.arguments import checked_state
-from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.oscillator import checked_system
-from vibro_sweep.model.real import number_of
-from vibro_sweep.model.refusals import not_allowed
+from vibro_sweep.tables.coordinates import checked_state
 
 ORDERS = (1, 2)
 

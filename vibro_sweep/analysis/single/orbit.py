@@ -11,6 +11,10 @@ from numpy.typing import ArrayLike
 
 from vibro_sweep.analysis.single.exponent_array import Exponents
 from vibro_sweep.analysis.single.result import Result, event_table, shows_force
+from vibro_sweep.checks.arguments import LATEST, checked_count, checked_times
+from vibro_sweep.checks.errors import ArgumentError
+from vibro_sweep.checks.real import number_of
+from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.engine import points
 from vibro_sweep.engine.compliant.law import LOGGED
 from vibro_sweep.engine.halting import interruptible
@@ -18,12 +22,9 @@ from vibro_sweep.engine.motion import orbits
 from vibro_sweep.engine.one_system import Engine, is_paper, plan_of
 from vibro_sweep.engine.records import new_results, starts_at
 from vibro_sweep.model.any_oscillator import AnyOscillator
-from vibro_sweep.model.arguments import LATEST, checked_count, checked_state, checked_times
-from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.oscillator import checked_system
 from vibro_sweep.model.own_time import rate_of, with_velocities
-from vibro_sweep.model.real import number_of
-from vibro_sweep.model.refusals import not_allowed
+from vibro_sweep.tables.coordinates import checked_state
 from vibro_sweep.tables.outcomes import OK, status_of
 
 if TYPE_CHECKING:

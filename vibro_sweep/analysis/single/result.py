@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from vibro_sweep.model.errors import ArgumentError, MissingPackageError
-from vibro_sweep.model.refusals import not_allowed
+from vibro_sweep.checks.errors import ArgumentError, MissingPackageError
+from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.model.wording import itinerary_text
 
 if TYPE_CHECKING:

@@ -4,8 +4,8 @@ import difflib
 import pkgutil
 from importlib import import_module
 
+from vibro_sweep.checks.refusals import ParameterError, cut
 from vibro_sweep.model.models.declaration import Model
-from vibro_sweep.model.refusals import ParameterError, cut
 
 _ORDER = ("two_mass", "one_mass", "ball_in_cavity", "chain", "linear")  # others follow by name
 

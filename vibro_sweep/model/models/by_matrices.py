@@ -2,10 +2,10 @@
 
 import numpy as np
 
+from vibro_sweep.checks.refusals import ParameterError
 from vibro_sweep.model import wording
 from vibro_sweep.model.linear import Linear, contact
 from vibro_sweep.model.models.declaration import CONTACT, OF_STOPS, UNITS, WHICH_STOPS, Model, Option
-from vibro_sweep.model.refusals import ParameterError
 from vibro_sweep.model.stacks import vector
 from vibro_sweep.tables.quantity import NOT_NEGATIVE, Parameter
 

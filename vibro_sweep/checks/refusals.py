@@ -5,7 +5,7 @@ import reprlib
 
 import numpy as np
 
-from vibro_sweep.model.errors import VibroSweepError
+from vibro_sweep.checks.errors import VibroSweepError
 
 LONGEST = 60  # letters of a value in a message
 MOST_DIGITS = 4000  # of an integer, which Python does not print where it has more

@@ -5,9 +5,9 @@ import os
 import stat
 from pathlib import Path
 
-from vibro_sweep.model.arguments import check_type
-from vibro_sweep.model.errors import ArgumentError, VibroSweepError
-from vibro_sweep.model.refusals import not_allowed
+from vibro_sweep.checks.arguments import check_type
+from vibro_sweep.checks.errors import ArgumentError, VibroSweepError
+from vibro_sweep.checks.refusals import not_allowed
 
 SUFFIX = ".pieces"  # of the folder of a run that is not complete
 WHAT = "the path of a file"

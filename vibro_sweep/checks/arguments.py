@@ -6,23 +6,12 @@ from typing import Any, overload
 
 import numpy as np
 
-from vibro_sweep.model.errors import ArgumentError, ArgumentTypeError
-from vibro_sweep.model.real import array_of, number_of
-from vibro_sweep.model.refusals import not_allowed
-from vibro_sweep.tables.coordinates import state as names
+from vibro_sweep.checks.errors import ArgumentError, ArgumentTypeError
+from vibro_sweep.checks.real import array_of, number_of
+from vibro_sweep.checks.refusals import not_allowed
 
-_COUNTS = {2: "two", 4: "four", 6: "six"}
 MAX_COUNT = 10**12  # periods
 LATEST = 10**9  # forcing periods from t = 0; a time then resolves a millionth of one
-
-
-def checked_state(state, masses: int = 2, name: str = "state") -> np.ndarray:
-    """A state (x1, v1, x2, v2, ...) as an array (2 N,). Raises ValueError unless it is so many finite numbers."""
-    values = array_of(state, 1)
-    if values is None or values.shape != (2 * masses,) or not np.isfinite(values).all():
-        count = _COUNTS.get(2 * masses, str(2 * masses))
-        raise ArgumentError(not_allowed(name, state, f"{count} finite numbers ({', '.join(names(masses))})"))
-    return values
 
 
 def is_number(value) -> bool:

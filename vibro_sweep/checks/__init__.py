@@ -1,0 +1,1 @@
+"""What is refused, and how it is said: errors, checks of arguments and of names of files, notices."""
