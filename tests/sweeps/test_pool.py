@@ -12,6 +12,7 @@ import time
 import tracemalloc
 from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
 from itertools import islice
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -248,10 +249,11 @@ def test_blocks_grow(monkeypatch):
 def test_boxes_of_any_sizes_are_the_grid(shape):
     rng = np.random.default_rng(1)
     for most in (1, 3, 8, 30, 1000):
-        begin, flat = int(rng.integers(math.prod(shape))), np.arange(math.prod(shape)).reshape(shape)
+        flat = np.arange(math.prod(shape)).reshape(shape)
+        begin, end = np.sort(rng.integers(flat.size + 1, size=2)).tolist() if shape else (0, 1)
         sizes = rng.integers(1, most + 1, flat.size).tolist()
-        found = list(boxes(shape, iter(sizes).__next__, begin))
-        assert [n for box in found for n in flat[box].ravel()] == list(range(begin if shape else 0, flat.size))
+        found = list(boxes(shape, iter(sizes).__next__, begin, end))
+        assert [n for box in found for n in flat[box].ravel()] == list(range(begin, end))
         assert all(flat[box].size <= size for box, size in zip(found, sizes, strict=False))
 
 
@@ -259,11 +261,11 @@ class Silent(Executor):
     """Of a scheduler that died when it was sent something: no future is ever done, or all are cancelled."""
 
     def __init__(self, gone):
-        self.gone = gone
+        self._client = SimpleNamespace(status="closed" if gone else "running")  # as Dask's executor has it
 
     def submit(self, function, *arguments):
         future = Future()
-        if not self.gone:
+        if self._client.status == "running":
             future.cancel()
             future.set_running_or_notify_cancel()
         return future

@@ -1,6 +1,7 @@
 """Blocks: boxes of a sweep's grid that are computed as one, by any worker, in any order."""
 
-from collections.abc import Callable, Iterator
+import itertools
+from collections.abc import Callable, Iterable, Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -17,6 +18,7 @@ from vibro_sweep.results.layout import quantities
 from vibro_sweep.scene import Scene
 from vibro_sweep.tables.exponents import RUNNING
 from vibro_sweep.tables.observables import WITH_STATES, WITH_TANGENTS
+from vibro_sweep.tables.outcomes import NOT_COMPUTED
 
 
 class Block(NamedTuple):
@@ -98,12 +100,14 @@ def plan_of(scene: Scene) -> points.Plan:
     )
 
 
-def blocks(scene: Scene, size: Callable[[], int], most_orbits: int | None = None, begin: int = 0) -> Iterator[Block]:
-    """The scene cut into boxes of `size()` points, in the order of the file.
+def blocks(
+    scene: Scene, size: Callable[[], int], most_orbits: int | None = None, spans: Iterable[tuple[int, ...]] = ((),)
+) -> Iterator[Block]:
+    """The scene, or spans of it, cut into boxes of `size()` points, in the order of the file.
 
     most_orbits : in a block, where that asks for parts of a point. All starts of a point stay together where
         attractors are sought among them. Of the chains of a `follow` these are the first parts; `next_part` has others
-    begin : number of the first point, or of the first chain of a `follow`
+    spans : first number, and the one behind the last, of points or of the chains of a `follow`; by default all
     """
     shape, start = scene.sweep_shape, scene.start
     follow, length, least = start.kind == "follow", 1, 1
@@ -124,12 +128,24 @@ def blocks(scene: Scene, size: Callable[[], int], most_orbits: int | None = None
         "expand_at": scene.expand_at,
         "version": version(),
     }
-    for rest in boxes(shape[int(follow) :], lambda: max(size() // length, least), begin):
+    cut = (boxes(shape[int(follow) :], lambda: max(size() // length, least), *span) for span in spans)
+    for rest in itertools.chain.from_iterable(cut):
         for direction, reverse in _directions(scene):
             lead = () if not follow else ((slice(shape[0] - length, shape[0]) if reverse else slice(0, length)),)
             box = lead + rest
             for which, part in _starts_cut(scene, most_orbits):
                 yield Block(box=box + direction + which, axes=_cut(scene, box), part=part, reverse=reverse, **common)
+
+
+def missing_spans(scene: Scene, status: np.ndarray) -> list[tuple[int, int]]:
+    """Spans of points, or of chains of a `follow`, (first, end), of which orbits are not computed."""
+    missing = status == NOT_COMPUTED
+    if missing.ndim > len(scene.sweep_shape):
+        missing = missing.any(axis=-1)
+    if scene.start.kind == "follow":
+        missing = missing.any(axis=0)
+    ends = np.flatnonzero(np.diff(missing.ravel().astype(np.int8), prepend=0, append=0))
+    return list(zip(ends[0::2].tolist(), ends[1::2].tolist(), strict=True))
 
 
 def next_part(scene: Scene, block: Block, ends: np.ndarray) -> Block:

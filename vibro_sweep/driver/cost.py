@@ -94,8 +94,10 @@ def _timed(scene: Scene, places: int, beside: int, periods: int) -> float:
     kind = "state" if start.kind == "follow" else start.kind  # each point by itself
     few = replace(short, start=replace(start, kind=kind, count=min(start.count, beside)))
     points = math.prod(scene.sweep_shape)
-    begins = np.unique(((np.arange(places) + 0.5) * points / places).astype(int))
-    made = [next(blocks(few, lambda: math.ceil(beside / few.n_starts), begin=int(begin))) for begin in begins]
+    begins = np.unique(((np.arange(places) + 0.5) * points / places).astype(int)).tolist()
+    made = [
+        next(blocks(few, lambda: math.ceil(beside / few.n_starts), spans=[(int(begin), points)])) for begin in begins
+    ]
     began = time.thread_time()
     orbits = sum(compute(block)[1]["status"].size for block in made)
     return (time.thread_time() - began) / orbits

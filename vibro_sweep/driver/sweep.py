@@ -15,7 +15,7 @@ from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.driver import MOST_WORKERS
 from vibro_sweep.driver.attractor_ids import following, number_attractors
 from vibro_sweep.driver.block_size import BlockSize
-from vibro_sweep.driver.blocks import Block, blocks, next_part, whole_chains
+from vibro_sweep.driver.blocks import Block, blocks, missing_spans, next_part, whole_chains
 from vibro_sweep.driver.compute import CHAIN_ENDS, compute
 from vibro_sweep.driver.executors import completed, worker_count
 from vibro_sweep.driver.memory_needed import available_cores, blocks_under_way, orbits_per_block
@@ -28,7 +28,7 @@ from vibro_sweep.files.sweep_runs import sweep_run
 from vibro_sweep.results import layout
 from vibro_sweep.results.in_memory import InMemory
 from vibro_sweep.scene import Scene
-from vibro_sweep.tables.outcomes import NOT_COMPUTED, VALID, status_of
+from vibro_sweep.tables.outcomes import VALID, status_of
 
 BLOCK_SECONDS = 1.0  # of a thread's block: long enough for its overhead not to count, short enough to lose
 SENT_SECONDS = 4.0  # of one that an executor computes
@@ -140,7 +140,7 @@ def _results(
     most = blocks_under_way(scene, orbits, here=executor is None)
     halt = new_halt()
     pool = executor or ThreadPoolExecutor(min(workers, most), initializer=heed, initargs=(halt,))
-    cut = blocks(scene, size, orbits, _first_missing(scene, file.status))
+    cut = blocks(scene, size, orbits, missing_spans(scene, file.status))
     todo = (block for block in cut if file.missing(whole_chains(block)))
     parts: deque[Block] = deque()  # which go on with the chains of others
 
@@ -161,16 +161,6 @@ def _results(
         if executor is None:
             halt[0] = 1
             pool.shutdown(wait=False, cancel_futures=True)
-
-
-def _first_missing(scene: Scene, status: np.ndarray) -> int:
-    """Number of the first point, or chain of a `follow`, of which an orbit is not computed."""
-    missing = status == NOT_COMPUTED
-    if missing.ndim > len(scene.sweep_shape):
-        missing = missing.any(axis=-1)
-    if scene.start.kind == "follow":
-        missing = missing.any(axis=0)
-    return int(np.argmax(missing))
 
 
 def _how(scene: Scene, threads: int | None, executor: Executor | None) -> dict:

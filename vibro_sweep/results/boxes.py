@@ -8,8 +8,8 @@ import numpy as np
 Box = tuple[slice, ...]
 
 
-def boxes(shape: tuple[int, ...], size: Callable[[], int], begin: int = 0) -> Iterator[Box]:
-    """An array of this shape cut into boxes of at most `size()` entries, in order, from entry `begin` on.
+def boxes(shape: tuple[int, ...], size: Callable[[], int], begin: int = 0, end: int | None = None) -> Iterator[Box]:
+    """An array of this shape, from entry `begin` to `end`, cut into boxes of at most `size()` entries, in order.
 
     A box has single values, then a part of an axis, then whole axes. The size of each is asked for when it is cut.
     """
@@ -17,8 +17,9 @@ def boxes(shape: tuple[int, ...], size: Callable[[], int], begin: int = 0) -> It
         yield ()
         return
     step = [math.prod(shape[axis + 1 :]) for axis in range(len(shape))]  # entries behind a value of an axis
-    while begin < math.prod(shape):
-        most, corner = max(1, size()), [int(at) for at in np.unravel_index(begin, shape)]
+    end = math.prod(shape) if end is None else end
+    while begin < end:
+        most, corner = max(1, min(size(), end - begin)), [int(at) for at in np.unravel_index(begin, shape)]
         cut = next(axis for axis, behind in enumerate(step) if behind <= most and begin % behind == 0)
         length = min(most // step[cut], shape[cut] - corner[cut])
         single = (slice(at, at + 1) for at in corner[:cut])
