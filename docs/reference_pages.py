@@ -88,7 +88,8 @@ class Keys:
 
     def of(self, form: dict) -> Iterator[str]:
         """A table, and below it the names of keys that are explained above."""
-        required, rows, repeated = form.get("required", ()), [], {}
+        either = form.get("anyOf", [{}])[0].get("required", [])  # of which another key may take the place
+        required, rows, repeated = [*form.get("required", ()), *either], [], {}
         for key, schema in form["properties"].items():
             meaning, value = schema.get("description", ""), _value(schema)
             if (key, meaning) in self.known:

@@ -110,3 +110,37 @@ def test_commands(few, tmp_path, monkeypatch, capsys):  # noqa: F811
     assert "has the windows of another sweep" in capsys.readouterr().err
     assert main(["windows", "other.h5", "-o", "few.windows.h5"]) == 2
     assert "overwrite" in capsys.readouterr().err
+
+
+def test_the_table_of_a_plane_says_in_which_row_a_window_lies(tmp_path, monkeypatch, capsys):
+    """Of a sweep that is not complete the command says so, and its bar only grows."""
+    monkeypatch.chdir(tmp_path)
+    done = []
+
+    def stop(so_far, total):
+        if so_far >= 12:
+            raise KeyboardInterrupt
+
+    scene = (
+        "system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, R: 0.8}\nsweep: {omega: {values: [0.62, 0.63, 0.64, 0.65]}, "
+    )
+    scene += "b: {start: 3, stop: 3.6, num: 4}}\norbit: {transient: 800, record: 60}\nobserve: [section]\n"
+    (tmp_path / "plane.yaml").write_text(scene)
+    with pytest.raises(KeyboardInterrupt):
+        vs.run(vs.load_scene("plane.yaml"), "plane.h5", progress=stop, block=4)
+    windows = vs.windows("plane.h5", "b", progress=lambda so_far, _: done.append(so_far))
+    assert done == sorted(done) and len(windows)
+    capsys.readouterr()
+    assert main(["windows", "plane.h5", "--parameter", "b"]) == 0
+    told = capsys.readouterr()
+    assert "plane.h5 is not complete: " in told.err and " of 16 orbits are missing" in told.err
+    title, names, *rows = told.out.splitlines()[1:]
+    assert title == f"windows in b: {len(windows)}" and names.split()[:2] == ["omega", "from"]
+    assert [float(row.split()[0]) for row in rows[: len(windows)]] == [window.held["omega"] for window in windows]
+
+
+def test_what_an_interrupted_run_has_left_is_named(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "some.h5.pieces").mkdir()
+    assert main(["info", "some.h5"]) == 2
+    assert "some.h5.pieces beside it is of a run that was interrupted" in capsys.readouterr().err

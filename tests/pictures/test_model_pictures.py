@@ -137,3 +137,10 @@ def test_a_single_orbit(name):
     if name == "cavity":
         np.testing.assert_allclose(data.impact_x2 - data.impact_x1, data.impact_side, rtol=1e-14)
         assert (portrait.get_xlabel(), data.attrs["mass_ratio"]) == ("$g$", 0.05)
+
+
+def test_own_matrices_whose_gap_is_x1_have_the_lines_of_their_stops():
+    numbers = {"M": [[1, 0], [0, 2]], "K": [[2, -1], [-1, 1]], "C": [[0.1, 0], [0, 0.1]], "force": [1, 0]}
+    machine = vs.Oscillator(**numbers, contact_normal=[1, 0], omega=0.8, b=1, R=0.7, stops="right", tau=0)
+    ax, *_ = vs.plot(vs.sweep(machine, {"b": np.linspace(0.01, 0.4, 12)}, transient=50, record=20)).axes
+    assert [line.get_gid() for line in ax.lines].count("stop") == 1

@@ -34,11 +34,11 @@ class Clock:
     def measure(self, monkeypatch, scene) -> float:
         monkeypatch.setattr(cost, "compute", self.compute)
         monkeypatch.setattr(cost.time, "thread_time", lambda: self.now)
-        return cost.orbit_seconds(scene)
+        return cost.orbit_seconds(scene, 2)
 
 
 def test_tables_are_not_multiplied_by_the_periods(monkeypatch):
-    """120 random clocks; measuring takes no more than a second and some first periods."""
+    """120 random clocks; measuring takes two seconds at most, and ten times the first periods of a point's orbits."""
     rng = np.random.default_rng(28)
     for _ in range(120):
         text = str(rng.choice([FEW, MANY, STARTS, CHAINS]))
@@ -47,7 +47,7 @@ def test_tables_are_not_multiplied_by_the_periods(monkeypatch):
         clock = Clock(10 ** rng.uniform(-6, 0), 10 ** rng.uniform(-8, -1))
         expected = clock.tables + clock.period * (transient + record)
         assert clock.measure(monkeypatch, scene) == pytest.approx(expected, rel=1e-3)
-        assert clock.now < 1.0 + 30 * (clock.tables + 4 * clock.period)
+        assert clock.now < 2.0 + 10 * scene.n_starts * (clock.tables + 4 * clock.period)
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -66,12 +66,12 @@ def test_orbits_are_spread_over_the_sweep(monkeypatch, text):
     clock = Clock(0.0, 1e-7)
     clock.measure(monkeypatch, scene)
     values = sorted(value for key, value in clock.places if key == "b")
-    assert values[0] < 5.2 and values[-1] > 5.8 and max(np.diff(values)) < 0.2
+    assert values[0] < 5.2 and values[-1] > 5.8 and max(np.diff(values)) < 0.25
 
 
 def test_an_estimate_knows_what_runs_side_by_side(monkeypatch):
     """Starts of a point, and up to eight chains in one direction, are one worker's."""
-    monkeypatch.setattr(cost, "orbit_seconds", lambda _: 1.0)
+    monkeypatch.setattr(cost, "orbit_seconds", lambda *_: 1.0)
     monkeypatch.setattr(cost, "available_cores", lambda: 8)
     one = scene_of("orbit: {transient: 0, record: 1}")
     starts = scene_of("orbit: {transient: 0, record: 1}\nstart: {random: 5, seed: 1}")
@@ -84,7 +84,7 @@ def test_an_estimate_knows_what_runs_side_by_side(monkeypatch):
 def test_check_says_that_it_compiles_before_it_does(tmp_path, monkeypatch, capsys):
     said = []
 
-    def compiling(_):
+    def compiling(*_):
         said.append(capsys.readouterr())
         logging.getLogger("vibro_sweep").info("compiling kernels, once")
         said.append(capsys.readouterr())

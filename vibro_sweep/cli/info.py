@@ -99,7 +99,7 @@ def _tables(data: xarray.Dataset) -> list[str]:
     arrays = {str(name): one.values for name, one in data.data_vars.items()}
     parameters = [str(name) for name in np.atleast_1d(data.attrs["parameters"])]
     if data.attrs["kind"] == WINDOWS:
-        return windows_table(arrays, parameters[0])
+        return windows_table(arrays, parameters)
     if data.attrs["kind"] == CHART:
         return curves_table(arrays, parameters)
     return special_table(arrays, parameters)

@@ -14,17 +14,24 @@ from vibro_sweep.tables.outcomes import EDGES, REASONS
 LONGEST_WORD = 12  # letters of an itinerary that is printed as it is
 
 
-def windows_table(arrays: Mapping, parameter: str) -> list[str]:
-    """A line for each window, then what its ends are and what no window covers."""
+def windows_table(arrays: Mapping, parameters: list[str]) -> list[str]:
+    """A line for each window, then what its ends are and what no window covers.
+
+    parameters : the one along which they reach, and those that were swept beside it, which a column has
+    """
+    parameter, *held = parameters
+    first = np.append(0, np.cumsum(arrays["branch_row_size"]))
     lower, upper = np.asarray(arrays["window_lower"]), np.asarray(arrays["window_upper"])
     words = [_short(word) for word in _words(arrays)]
-    rows = [("from", "ends with", "to", "ends with", "period", "impacts", "symmetric", "orbits", "other attractor")]
+    names = ("from", "ends with", "to", "ends with", "period", "impacts", "symmetric", "orbits", "other attractor")
+    rows = [(*held, *names)]
     for w, branch in enumerate(np.asarray(arrays["window_branch"]).tolist()):
         ends = [ending(arrays, int(end[w])) for end in (lower, upper)]
         numbers = [_number(arrays, int(end[w])) for end in (lower, upper)]
         kind = [str(arrays["window_period"][w]), words[branch], "yes" if arrays["window_symmetric"][w] else "no"]
         orbits = [str(arrays[name][w]) for name in ("window_orbits", "window_other_attractor")]
-        rows.append((numbers[0], ends[0], numbers[1], ends[1], *kind, *orbits))
+        row = [f"{arrays[name][first[branch]]:.10g}" for name in held]
+        rows.append((*row, numbers[0], ends[0], numbers[1], ends[1], *kind, *orbits))
     lines = [f"windows in {parameter}: {len(rows) - 1}", *_aligned(rows)]
     named = Counter(TYPES[code].name for code in np.asarray(arrays["special_type"])[np.append(lower, upper)].tolist())
     lines.append("ends         " + _counted(named))

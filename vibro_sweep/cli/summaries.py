@@ -141,12 +141,13 @@ def summary(output: Path, report: "RunReport") -> str:
     unsettled = report.statuses.get("not_settled", 0)
     bad = {name: count for name, count in report.statuses.items() if name not in ("ok", "not_settled") and count}
     named = ", ".join(f"{name} {count}" for name, count in bad.items())
-    state = f"{report.bad} with a bad status ({named})" if report.bad else "all ok"
+    state = f"{report.bad} with a bad status ({named})" if report.bad else "none failed" if unsettled else "all ok"
     state += f"; {unsettled:,} not settled yet: `settle`, or a longer record, may tell" if unsettled else ""
     if not report.computed:
         return f"{output} is complete already, from the same scene: {points(report.points)}, {state}"
     advice = [f"\n{one.name}: {one.advice}" for one in STATUSES if one.name in bad]
-    return f"{output}: {points(report.points)} in {duration(report.seconds)}, {state}{''.join(advice)}"
+    here = "" if report.computed == report.points else f"{report.computed:,} of "
+    return f"{output}: {here}{points(report.points)} in {duration(report.seconds)}, {state}{''.join(advice)}"
 
 
 def points(count: int) -> str:

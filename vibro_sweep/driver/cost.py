@@ -9,6 +9,7 @@ from numba.core import event
 
 from vibro_sweep.checks.arguments import checked_count
 from vibro_sweep.driver import MOST_WORKERS
+from vibro_sweep.driver.block_size import BlockSize
 from vibro_sweep.driver.blocks import blocks
 from vibro_sweep.driver.compute import compute
 from vibro_sweep.driver.memory_needed import available_cores
@@ -16,8 +17,12 @@ from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.results import layout
 from vibro_sweep.scene import Scene
 
-PLACES = 8  # of the sweep, at which orbits are computed
-ENOUGH = 0.1  # seconds of them from which on more periods are not computed but multiplied
+PLACES = 8  # of the sweep, at which orbits are computed, at most
+ENOUGH, LONGEST = (
+    0.1,
+    1.0,
+)  # seconds of a measurement: from the first on it may be the last one, from the second on it is
+GROWN = 1.5  # times longer than the one before the last one takes, so that periods count in it
 LONGER = 4  # times as many periods in the next measurement
 
 
@@ -55,7 +60,8 @@ def estimate(scene: Scene, workers: int | None = None) -> Estimate:
     periods, compiling = scene.transient + scene.record, []
     with event.install_timer("numba:compile", compiling.append):
         _timed(scene, 1, 1, 1)
-    seconds = scene.n_points * orbit_seconds(scene) / threads_of(scene, workers or available_cores())
+    workers = workers or available_cores()
+    seconds = scene.n_points * orbit_seconds(scene, workers) / threads_of(scene, workers)
     longest = (max(scene.transient, scene.settle or 0) + scene.record) / periods
     return Estimate(
         scene.n_points, scene.n_points * periods, layout.size(scene), seconds, seconds * longest, sum(compiling)
@@ -71,36 +77,36 @@ def threads_of(scene: Scene, workers: int) -> int:
     return min(workers, available_cores(), jobs)
 
 
-def orbit_seconds(scene: Scene) -> float:
-    """CPU seconds of an orbit among others beside it.
+def orbit_seconds(scene: Scene, workers: int) -> float:
+    """CPU seconds of an orbit in the blocks of a run.
 
-    It has tables to be filled and a record to be looked through besides its periods. So the time of a few periods is
-    compared with that of more, until these take a moment, and the difference alone is multiplied.
+    A block has tables to be filled, and an orbit a record to be looked through, besides its periods. So the time of a
+    few periods is compared with that of more, until these take a moment, and the difference alone is multiplied.
     """
-    total, periods = scene.transient + scene.record, 1
-    many = _timed(scene, 1, 1, 1) < ENOUGH / (PLACES * LANES)
-    places, beside = (PLACES, LANES) if many else (1, 1)
-    now, slope = _timed(scene, places, beside, periods), 0.0
-    while periods < total and (periods == 1 or now * places * beside < ENOUGH):
+    total, periods, most = scene.transient + scene.record, 1, BlockSize(scene, scene.n_points, workers, 1.0, None).most
+    beside, (now, _) = 1, _timed(scene, 1, 1, 1)
+    while now < ENOUGH / PLACES and beside < most:
+        beside = min(LANES * beside, most)
+        now, _ = _timed(scene, 1, beside, 1)
+    places, before, slope = max(1, int(min(PLACES, ENOUGH / max(now, 1e-9)))), 0.0, 0.0
+    now, orbits = _timed(scene, places, beside, 1)
+    while periods < total and (periods == 1 or now < min(LONGEST, max(ENOUGH, GROWN * before))):
         longer = min(LONGER * periods, total)
-        then = _timed(scene, places, beside, longer)
-        now, slope, periods = then, max(0.0, then - now) / (longer - periods), longer
-    return now + slope * (total - periods)
+        before, (now, _) = now, _timed(scene, places, beside, longer)
+        slope, periods = max(0.0, now - before) / (longer - periods), longer
+    return (now + slope * (total - periods)) / orbits
 
 
-def _timed(scene: Scene, places: int, beside: int, periods: int) -> float:
-    """CPU seconds of an orbit, of which some are computed beside each other at some places, over so many periods."""
+def _timed(scene: Scene, places: int, beside: int, periods: int) -> tuple[float, int]:
+    """CPU seconds of blocks of so many points at some places, over so many periods; and how many orbits they have."""
     short, start = _shortened(scene, periods), scene.start
-    kind = "state" if start.kind == "follow" else start.kind  # each point by itself
-    few = replace(short, start=replace(start, kind=kind, count=min(start.count, beside)))
+    few = replace(short, start=replace(start, kind="state")) if start.kind == "follow" else short
     points = math.prod(scene.sweep_shape)
     begins = np.unique(((np.arange(places) + 0.5) * points / places).astype(int)).tolist()
-    made = [
-        next(blocks(few, lambda: math.ceil(beside / few.n_starts), spans=[(int(begin), points)])) for begin in begins
-    ]
+    made = [next(blocks(few, lambda: beside, spans=[(begin, points)])) for begin in begins]
     began = time.thread_time()
     orbits = sum(compute(block)[1]["status"].size for block in made)
-    return (time.thread_time() - began) / orbits
+    return time.thread_time() - began, orbits
 
 
 def _shortened(scene: Scene, periods: int) -> Scene:

@@ -12,7 +12,7 @@ from vibro_sweep.checks.arguments import check_type
 from vibro_sweep.checks.errors import VibroSweepError
 from vibro_sweep.checks.file_names import FileError
 from vibro_sweep.files.file_errors import StoreError
-from vibro_sweep.files.reading import sweep_in
+from vibro_sweep.files.reading import sweep_in, warn_where_incomplete
 from vibro_sweep.model.built import BUILD
 from vibro_sweep.results.sweep_dataset import Sweep
 from vibro_sweep.scene import Continuation, parse_scene
@@ -56,6 +56,7 @@ def swept(data: "str | Path | xarray.Dataset") -> Iterator[Sweep]:
             raise SourceError("data: this dataset is not one of `vibro_sweep.open` or `vibro_sweep.sweep`")
     name = data if isinstance(data, (str, Path)) else "data"
     with computed_from(name), sweep_in(data, computes=True) as found:
+        warn_where_incomplete(found.data)
         yield found
 
 

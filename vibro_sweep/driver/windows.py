@@ -139,11 +139,14 @@ def search_of(
     progress: Callable[[int, int], None] | None = None,
 ) -> WindowSearch:
     """The windows of rows; those that `file` has pieces of are not followed again."""
-    search = WindowSearch(rows)
+    search, most = WindowSearch(rows), 0
 
-    def tell(done: int, _: int) -> None:  # an orbit that was followed has its window, or a reason, soon
+    def tell(done: int, jobs: int) -> None:  # each orbit that is followed has the window of some of those left, soon
+        nonlocal most
+        soon = search.done + (search.total - search.done) * done // jobs
+        most = max(most, min(soon, search.total - 1))
         if progress:
-            progress(max(search.done, done), search.total)
+            progress(most, search.total)
 
     search.search(kept(window_of, pool, file, tell))
     return search

@@ -33,11 +33,16 @@ def open_whole(path: Path) -> xarray.Dataset:
         raise
     if not data.encoding["sealed"]:
         _log.warning("%s", foreign(path))
-    elif not data.encoding["complete"]:
-        status = data["status"].values
-        missing = int(np.count_nonzero(status == NOT_COMPUTED))
-        _log.warning("%s is not complete: %s of %s orbits are missing", path, f"{missing:,}", f"{status.size:,}")
+    warn_where_incomplete(data)
     return data
+
+
+def warn_where_incomplete(data: xarray.Dataset) -> None:
+    """Say how many orbits of a file are not computed yet."""
+    if data.encoding.get("sealed") and not data.encoding.get("complete"):
+        status = data["status"].values
+        missing = f"{np.count_nonzero(status == NOT_COMPUTED):,} of {status.size:,}"
+        _log.warning("%s is not complete: %s orbits are missing", data.encoding["source"], missing)
 
 
 @contextmanager

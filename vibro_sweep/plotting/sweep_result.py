@@ -208,8 +208,8 @@ class Result:
     @property
     def contact_normal(self) -> np.ndarray | None:
         """n of the gap n.x, (N,); None where that is x1."""
-        found = self.settings.get("contact_normal")
-        return None if found is None else np.asarray(found, float)
+        normal = np.asarray(self.settings.get("contact_normal", [1]), float)
+        return None if normal[0] == 1 and not normal[1:].any() else normal
 
     def grazing(self, key) -> dict[str, np.ndarray]:
         """Clearances at which the free motion touches the stops, at each value of a swept key, if they depend on no

@@ -8,6 +8,7 @@ from typing import Any
 
 from vibro_sweep.checks.real import number_of
 from vibro_sweep.checks.refusals import cut
+from vibro_sweep.model.models import DEFAULT
 
 PHYSICAL = ("M1", "M2", "K1", "K2", "C1", "C2", "P1", "P2", "Omega", "B", "B0")
 NONDIMENSIONAL = (
@@ -153,6 +154,8 @@ def _start(given: object) -> str:
 def _axis(key: str, given: object) -> str | None:
     if isinstance(given, list) and given and all(isinstance(value, (int, float)) for value in given):
         whole = f"{{values: [{', '.join(map(str, given))}]}}" if len(given) < 7 else "{values: [...]}"
+        if len(given) == 3 and _is_number_of_values(*given):
+            return f"write {key}: {{start: {given[0]}, stop: {given[1]}, num: {given[2]}}}; three values are {whole}"
         between = f", or {{start: {given[0]}, stop: {given[1]}, num: 101}}" if len(given) == 2 else ""
         return f"write {key}: {whole}{between}"
     if isinstance(given, (int, float)) and not isinstance(given, bool):
@@ -160,11 +163,17 @@ def _axis(key: str, given: object) -> str | None:
     return f"write {key}: {AXIS}"
 
 
+def _is_number_of_values(first: float, last: float, num: object) -> bool:
+    """Whether the third of three numbers says how many values are meant: whole, and not between or near the others."""
+    return isinstance(num, int) and num > 2 and num > 10 * max(abs(first), abs(last))
+
+
 def of_physical(key: str, system: object) -> str | None:
     """Why a physical quantity cannot be swept, and what can in its place; None for another key."""
-    if key not in PHYSICAL:
-        return None
     numbers = system.get("physical") if isinstance(system, Mapping) else None
+    other = isinstance(system, Mapping) and system.get("type", DEFAULT) != DEFAULT
+    if key not in PHYSICAL or other:
+        return None
     scale = _scales(numbers).get(key) if isinstance(numbers, Mapping) else None
     if scale is not None:
         name, formula, factor = scale
