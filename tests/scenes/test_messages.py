@@ -7,7 +7,7 @@ from support import cases, refusals
 
 import vibro_sweep as vs
 
-NUMBER = {"scene": 272, "command": 75, "call": 511}
+NUMBER = {"scene": 284, "command": 75, "call": 515}
 ROWS = cases.rows("messages")
 
 

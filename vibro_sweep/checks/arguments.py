@@ -1,16 +1,18 @@
 """Arguments of the Python functions, checked: what is wrong is named before anything is computed or opened."""
 
+import functools
 import inspect
-from collections.abc import Collection
-from typing import Any, overload
+from collections.abc import Callable, Collection
+from typing import Any, TypeVar, overload
 
 import numpy as np
 
 from vibro_sweep.checks.errors import ArgumentError, ArgumentTypeError
 from vibro_sweep.checks.real import array_of, number_of
-from vibro_sweep.checks.refusals import not_allowed
+from vibro_sweep.checks.refusals import cut, not_allowed
 
 MAX_COUNT = 10**12  # periods
+F = TypeVar("F", bound=Callable)
 LATEST = 10**9  # forcing periods from t = 0; a time then resolves a millionth of one
 
 
@@ -97,6 +99,25 @@ def accepts(function: object, *given: Any, **named: Any) -> bool:
     except TypeError:
         return False
     return True
+
+
+def names_its_arguments(function: F) -> F:
+    """The function, which says what its arguments are where it is called with others: TypeError."""
+    signature = inspect.signature(function)
+    known = [one.name for one in signature.parameters.values()]
+    any_name = any(one.kind == one.VAR_KEYWORD for one in signature.parameters.values())
+
+    @functools.wraps(function)
+    def called(*given, **named):
+        try:
+            signature.bind(*given, **named)
+        except TypeError as error:
+            unknown = [] if any_name else [cut(name) for name in named if name not in known]
+            what = f"{', '.join(unknown)}: no such argument" if unknown else str(error)
+            raise ArgumentTypeError(f"{function.__name__}: {what}; it takes {', '.join(known)}") from None
+        return function(*given, **named)
+
+    return called  # type: ignore[return-value]
 
 
 def check_type(name: str, value: object, kinds: type | tuple[type, ...], allowed: str) -> None:

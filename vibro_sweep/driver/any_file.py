@@ -3,6 +3,7 @@
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from vibro_sweep.checks.arguments import names_its_arguments
 from vibro_sweep.checks.file_names import FileError, checked_path, read_bytes
 from vibro_sweep.files.reading import open_whole
 
@@ -10,6 +11,7 @@ if TYPE_CHECKING:
     import xarray
 
 
+@names_its_arguments
 def open(path: str | Path) -> "xarray.Dataset":  # the name that users of xarray expect
     """A file of this program as an `xarray.Dataset` with coordinates; numbers of an HDF5 file are read when used.
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-from vibro_sweep.checks.arguments import accepts, check_type
+from vibro_sweep.checks.arguments import accepts, check_type, names_its_arguments
 from vibro_sweep.checks.errors import ArgumentError, ArgumentTypeError
 from vibro_sweep.checks.file_names import file_to_write
 from vibro_sweep.checks.real import number_of
@@ -42,6 +42,7 @@ def _first(name: str, values: object) -> float:
     return first
 
 
+@names_its_arguments
 def sweep(
     system: AnyOscillator | Callable[..., AnyOscillator],
     axes: "Mapping[str, np.ndarray | Sequence[float] | Mapping[str, Any]]",

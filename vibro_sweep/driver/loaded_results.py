@@ -14,6 +14,7 @@ from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit, orbit_of
 from vibro_sweep.analysis.windows.members import solution_in
 from vibro_sweep.analysis.windows.unvisited import Unvisited
 from vibro_sweep.analysis.windows.window import Window, Windows
+from vibro_sweep.checks.arguments import names_its_arguments
 from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.checks.file_names import checked_path
 from vibro_sweep.driver.any_file import first_bytes
@@ -33,6 +34,7 @@ Arrays = dict[str, np.ndarray]
 Followed = Branch | BifurcationCurve
 
 
+@names_its_arguments
 def load(path: str | Path) -> PeriodicOrbit | Saved | list[Branch] | list[BifurcationCurve]:
     """What `.save` wrote, a PeriodicOrbit, Branch, BifurcationCurve or Windows; of the file of a scene of branches or
     curves a list of these.

@@ -8,7 +8,7 @@ from typing import Literal
 
 import numpy as np
 
-from vibro_sweep.checks.arguments import check_type, checked_count
+from vibro_sweep.checks.arguments import check_type, checked_count, names_its_arguments
 from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.checks.file_names import file_to_write
 from vibro_sweep.checks.refusals import not_allowed
@@ -23,6 +23,7 @@ from vibro_sweep.tables.file_columns import CHART
 __all__ = ["RunReport", "run"]
 
 
+@names_its_arguments
 def run(
     scene: Scene | Continuation,
     output: str | Path,

@@ -16,7 +16,7 @@ from vibro_sweep.analysis.windows.rows import Row, check_data, chosen_key, rows_
 from vibro_sweep.analysis.windows.unvisited import unvisited_in
 from vibro_sweep.analysis.windows.window import Windows, in_file_order, windows_of
 from vibro_sweep.analysis.windows.window_search import WindowSearch
-from vibro_sweep.checks.arguments import check_type
+from vibro_sweep.checks.arguments import check_type, names_its_arguments
 from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.checks.file_names import checked_path, file_to_write
 from vibro_sweep.checks.refusals import not_allowed
@@ -40,6 +40,7 @@ if TYPE_CHECKING:
 FAR = 1e-2  # of the size of a state: by so much no periodic orbit of a sweep misses where it began
 
 
+@names_its_arguments
 def windows(
     data: "str | Path | xarray.Dataset",
     parameter: str | None = None,

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vibro_sweep.checks.arguments import checked_interval, checked_word
+from vibro_sweep.checks.arguments import checked_interval, checked_word, names_its_arguments
 from vibro_sweep.checks.errors import ArgumentError, ArgumentTypeError
 from vibro_sweep.checks.file_names import checked_path
 from vibro_sweep.checks.refusals import not_allowed
@@ -55,6 +55,7 @@ class LivePage:
         return f'{frame}<a href="{self.url}" target="_blank">The page in a window of its own</a>'
 
 
+@names_its_arguments
 def explore(
     system: "AnyOscillator | Scene | str | Path | xarray.Dataset",
     parameter: str | None = None,

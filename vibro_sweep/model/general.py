@@ -10,6 +10,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
+from vibro_sweep.checks.not_computed import why_not_computed
 from vibro_sweep.checks.real import array_of, number_of
 from vibro_sweep.checks.refusals import ParameterError
 from vibro_sweep.model import wording
@@ -199,7 +200,8 @@ def checked(model: Model, given: Mapping[str, Any]) -> dict[str, Any]:
     known = {one.name: one for one in (*model.options, *model.numbers)}
     for name, value in given.items():
         if name not in known:
-            raise ParameterError(name, value, f"left out; {model.name} has {', '.join(known)}")
+            why = why_not_computed(name) or f"{model.name} has {', '.join(known)}"
+            raise ParameterError(name, value, f"left out; {why}")
     result = {}
     for one in model.options:
         result[one.name] = _option(one, given.get(one.name, one.default))
@@ -235,7 +237,8 @@ def _checked_list(one: Parameter, value: Any, length: int) -> tuple[float, ...]:
         value = [value] * length  # nothing anywhere
     values = _entries(one, value)
     if len(values) != length:
-        raise ParameterError(one.name, value, f"a list of {length} numbers, one for each {one.each}")
+        walls = ", to both walls too, where 0 is none" if one.each == "spring" else ""
+        raise ParameterError(one.name, value, f"a list of {length} numbers, one for each {one.each}{walls}")
     return tuple(checked_number(one, entry, key=f"{one.name}[{i}]") for i, entry in enumerate(values))
 
 

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from vibro_sweep.checks.arguments import names_its_arguments
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.linear import Linear, amplitudes, gap_response, grazing_phase, static_state
 from vibro_sweep.model.models.two_mass import FREE_MOTION
@@ -135,6 +136,7 @@ class Grazing(NamedTuple):
     b_left: float
 
 
+@names_its_arguments
 def grazing(system: AnyOscillator) -> Grazing:
     """Clearance and phase at which the steady motion of period T touches the stops, by (16)-(19).
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, overload
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from vibro_sweep.checks.arguments import check_type, checked_flag
+from vibro_sweep.checks.arguments import check_type, checked_flag, names_its_arguments
 from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.checks.file_names import checked_path, file_to_write
 from vibro_sweep.checks.real import array_of, number_of
@@ -36,6 +36,7 @@ def plot(
 ) -> Figure | None: ...
 
 
+@names_its_arguments
 def plot(
     data: "str | Path | xarray.Dataset | Plottable",
     kind: str | None = None,

@@ -3,12 +3,15 @@
 from dataclasses import replace
 from pathlib import Path
 
+from vibro_sweep.checks.arguments import names_its_arguments
+
 from .continuation import Continuation, is_continuation, parse_continuation
 from .scene import Scene, parse_scene
 from .yaml_reading import text_of
 from .yaml_text import YAMLTextError, read_yaml
 
 
+@names_its_arguments
 def load_scene(path: str | Path) -> Scene | Continuation:
     """Read a scene from a YAML file: a `Scene` of orbits, or with `continue` a `Continuation`, of branches or curves.
 

@@ -8,6 +8,7 @@ from itertools import islice
 from pydantic import ValidationError
 
 from vibro_sweep.checks.errors import VibroSweepError
+from vibro_sweep.checks.not_computed import why_not_computed
 from vibro_sweep.checks.refusals import LONGEST, cut, shown
 from vibro_sweep.tables.observables import WORDS
 
@@ -129,6 +130,7 @@ def _line(item, form, data) -> str:
     }.get(kind, item["msg"])
     if kind in ("frozen_set_type", "list_type"):
         text += _and(slips.other_form(path, given, OBSERVATIONS))
+    text += _and(slips.of_list(path, given))
     is_text = isinstance(given, str) and kind in ("float_type", "int_type")
     return problem(path, given, text + (f", not text{_and(slips.number_in_text(given))}" if is_text else ""))
 
@@ -144,7 +146,11 @@ def _unknown(loc, keys: list[str], given, data) -> str:
         return f"unknown key; {hint}"
     if place == "sweep" and len(loc) == 2 and (hint := slips.of_swept_frequency(key, given, data.get("system"))):
         return f"unknown key; {hint}"
-    if place == "system" and (hint := slips.of_mass(key, data.get("system"))):
+    if place == "sweep" and len(loc) == 2 and slips.has_words(given):
+        return "unknown key; only numbers are swept: make a run for each word"
+    if place == "system" and (hint := slips.of_mass(key, data.get("system")) or slips.of_damping(key, keys)):
+        return f"unknown key; {hint}"
+    if place == "system" and (hint := why_not_computed(key)):
         return f"unknown key; {hint}"
     if "Omega" in keys and (hint := slips.of_frequency(key, given)):
         return f"unknown key; {hint}"

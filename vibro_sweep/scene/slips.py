@@ -8,7 +8,7 @@ from typing import Any
 
 from vibro_sweep.checks.real import number_of
 from vibro_sweep.checks.refusals import cut
-from vibro_sweep.model.models import DEFAULT
+from vibro_sweep.model.models import DEFAULT, MODELS
 
 PHYSICAL = ("M1", "M2", "K1", "K2", "C1", "C2", "P1", "P2", "Omega", "B", "B0")
 NONDIMENSIONAL = (
@@ -60,6 +60,7 @@ SYNONYMS = {
     "down": ("backward", "decreasing"),
 }
 AXIS = "{start: 6.5, stop: 6.9, num: 401}"
+MATRICES = {one.name for model in MODELS.values() for one in model.options if one.kind == "matrix"}
 
 
 def meant(word: object, options: Iterable[str]) -> str | None:
@@ -118,6 +119,11 @@ def other_form(path: str, given: object, words: Iterable[str] = ()) -> str | Non
         names = [given] if isinstance(given, str) else list(given) if isinstance(given, Mapping) else []
         known = [name for name in (meant(name, words) for name in names) if name]
         return f"write observe: [{', '.join(known or ['section', 'lyapunov'])}]"
+    if path == "system.stops" and str(given).lower() in ("none", "no", "false", "off", "free", "[]", "0"):
+        return "the motion without stops is that with a large b, and `vibro-sweep grazing` says how large"
+    if path == "system.stops" and isinstance(given, list) and _is_increasing_pair(given):
+        lo, hi = given
+        return f"write b: {(hi - lo) / 2:g} and offset: {(hi + lo) / 2:g}, with stops: both"
     if path == "system.stops" and isinstance(given, (Mapping, list)):
         sides = [side for side in ("left", "right") if side in list(given)]
         which = sides[0] if len(sides) == 1 else "both"
@@ -137,6 +143,26 @@ def other_form(path: str, given: object, words: Iterable[str] = ()) -> str | Non
     if path == "orbit":
         return "write orbit: {transient: 1000, record: 200}"
     return "write trajectory: {periods: 4, samples: 400}" if path == "trajectory" else None
+
+
+def _is_increasing_pair(given: list) -> bool:
+    return len(given) == 2 and all(number_of(one) is not None for one in given) and given[0] < given[1]
+
+
+def of_list(path: str, given: object) -> str | None:
+    """The hint for a list where a number of `system` belongs, or a number where a list does; None for another value."""
+    place, _, key = path.partition(".")
+    if place != "system":
+        return None
+    if key in MATRICES and number_of(given) is not None:
+        return f"write {key}: [[{given}]], a list of lists"
+    if key == "omega" and isinstance(given, list):
+        return "the force has one frequency; values that vary stand in sweep"
+    if key.startswith("contact_normal[") and isinstance(given, list):
+        return "there is one contact, whose contact_normal is a list of numbers; several are not computed"
+    if key == "stop_at" and isinstance(given, list):
+        return "a contact between two masses has the type linear, with contact_normal: [..., -1, 1, ...]"
+    return None
 
 
 def _start(given: object) -> str:
@@ -217,6 +243,19 @@ def of_mass(key: str, system: object) -> str | None:
     """The hint for the mass of a model in which it is 1; None for another key."""
     kind = system.get("type") if isinstance(system, Mapping) else None
     return f"the mass of one_mass is 1; {ONE_MASS}" if kind == "one_mass" and key in ("m", "M", "mass") else None
+
+
+def of_damping(key: str, keys: Iterable[str]) -> str | None:
+    """The hint for a damping ratio in a model of dampers; None for another key or model."""
+    if key not in ("zeta", "xi", "damping_ratio", "Q") or "c" not in keys:
+        return None
+    return "a damper is c = 2 zeta sqrt(k m); the type linear has modal_damping, a ratio for each mode"
+
+
+def has_words(given: object) -> bool:
+    """Whether the values of a sweep are no numbers."""
+    values = given.get("values") if isinstance(given, Mapping) else given
+    return isinstance(values, list) and any(isinstance(one, str) and not number_in_text(one) for one in values)
 
 
 def _scales(numbers: Mapping[str, Any]) -> dict[str, tuple[str, str, float]]:

@@ -27,7 +27,14 @@ from vibro_sweep.analysis.periodic.orbit_portrait import portrait
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.analysis.single.result import FileResult
-from vibro_sweep.checks.arguments import check_call, check_type, checked_count, checked_interval, checked_word
+from vibro_sweep.checks.arguments import (
+    check_call,
+    check_type,
+    checked_count,
+    checked_interval,
+    checked_word,
+    names_its_arguments,
+)
 from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.model.linear import family_of
@@ -118,6 +125,7 @@ class Branch(FileResult):
         return portrait(self.special[row].orbit)
 
 
+@names_its_arguments
 @one_thread()
 def continue_orbit(
     orbit: PeriodicOrbit, parameter: str, bounds: tuple[float, float], progress=None, step: float = 1.0

@@ -11,7 +11,7 @@ from vibro_sweep.analysis.branches.seeds import packed, seed_of
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.continuation.starting_orbit import Start
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
-from vibro_sweep.checks.arguments import check_call, check_type, checked_count
+from vibro_sweep.checks.arguments import check_call, check_type, checked_count, names_its_arguments
 from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.tables.bifurcations import WAYS
@@ -43,6 +43,7 @@ class FollowedBranch:
         return branch_text.of_followed(self)
 
 
+@names_its_arguments
 def follow_branches(
     orbit: PeriodicOrbit, parameter: str, bounds: tuple[float, float], follow=WAYS, depth: int = 1, progress=None
 ) -> list[FollowedBranch]:

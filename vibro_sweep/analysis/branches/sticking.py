@@ -15,13 +15,14 @@ from vibro_sweep.analysis.continuation.solution_curve import NoPlaneError, Solut
 from vibro_sweep.analysis.continuation.starting_orbit import Start
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.checks.arguments import check_type
+from vibro_sweep.checks.arguments import check_type, names_its_arguments
 from vibro_sweep.engine.continuation.workspace import FIRST, Place
 
 SHORTEST_CHATTER = 7  # impacts on one stop, the one that appears among them
 EARLIER = 1.0, 1.3, 0.0  # by how much the sequence may end before the graze: times since the acceleration has vanished
 
 
+@names_its_arguments
 def sticking_onset(special: SpecialPoint) -> SpecialPoint | None:
     """The sticking onset beyond a graze at which an impact appears at the end of a chatter sequence.
 

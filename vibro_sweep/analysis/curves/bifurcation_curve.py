@@ -25,7 +25,7 @@ from vibro_sweep.analysis.curves.curve_start import start_at
 from vibro_sweep.analysis.periodic.one_thread import one_thread
 from vibro_sweep.analysis.periodic.orbit_portrait import portrait
 from vibro_sweep.analysis.single.result import FileResult
-from vibro_sweep.checks.arguments import check_call, check_type, checked_flag, checked_interval
+from vibro_sweep.checks.arguments import check_call, check_type, checked_flag, checked_interval, names_its_arguments
 from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.checks.real import array_of
 from vibro_sweep.checks.refusals import not_allowed
@@ -108,6 +108,7 @@ class BifurcationCurve(FileResult):
         return plot_curves(drawn, names, self.begins.orbit.system, width)
 
 
+@names_its_arguments
 @one_thread()
 def bifurcation_curve(
     special: SpecialPoint, parameters: tuple[str, str], bounds, progress=None, virtual: bool = True, step: float = 1.0

@@ -18,7 +18,7 @@ from vibro_sweep.analysis.curves.curve_start import as_special, slow_impacts
 from vibro_sweep.analysis.periodic.linearised import Linearised
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.checks.arguments import check_type
+from vibro_sweep.checks.arguments import check_type, names_its_arguments
 from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.engine.continuation.workspace import THETA
 from vibro_sweep.tables.bifurcations import CODIMENSION_TWO, name_of
@@ -38,6 +38,7 @@ def switch(special: CurvePoint) -> list[SpecialPoint]: ...  # type: ignore[overl
 def switch(special: SpecialPoint) -> list[PeriodicOrbit]: ...
 
 
+@names_its_arguments
 def switch(special):
     """The orbits or bifurcations that begin at a special point.
 

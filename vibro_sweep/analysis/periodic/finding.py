@@ -12,7 +12,7 @@ from vibro_sweep.analysis.periodic.from_itinerary import from_itinerary
 from vibro_sweep.analysis.periodic.from_state import from_guess, from_state
 from vibro_sweep.analysis.periodic.itinerary import SIDES, word
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
-from vibro_sweep.checks.arguments import checked_count
+from vibro_sweep.checks.arguments import checked_count, names_its_arguments
 from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.checks.real import array_of
 from vibro_sweep.checks.refusals import not_allowed
@@ -24,6 +24,7 @@ MOST_PERIODS = 10**6
 MOST_IMPACTS = 1000  # of an itinerary: each has thousands of seeds
 
 
+@names_its_arguments
 def periodic_orbit(system, state=None, periods: int = 1, itinerary: str | None = None, guess=None) -> PeriodicOrbit:
     """Find a periodic orbit by Newton's method on its impact times and impulses.
 

@@ -19,7 +19,7 @@ from vibro_sweep.analysis.periodic.itinerary import canonical_start
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit, found_orbit
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.analysis.periodic.steady_gap import steady_gap
-from vibro_sweep.checks.arguments import checked_count
+from vibro_sweep.checks.arguments import checked_count, names_its_arguments
 from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.engine.impulses import flights
@@ -81,6 +81,7 @@ class _Graze(NamedTuple):
         return self.first + T / self.per_period * j, self.side * (-1) ** (j * (self.per_period - 1))
 
 
+@names_its_arguments
 def born_at_grazing(system, periods: int = 6) -> list[Born]:
     """All orbits of least period 1 .. `periods` that are born where the steady motion grazes, mirror images once.
 

@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
+from vibro_sweep.checks.arguments import names_its_arguments
 from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.checks.real import number_of
 from vibro_sweep.checks.refusals import not_allowed
@@ -49,6 +50,7 @@ class DiscontinuityMap:
         return self._map([checked_state(state, self._masses)], jacobian=True).jacobian[0]
 
 
+@names_its_arguments
 def discontinuity_map(system: AnyOscillator, order: int = 1, expand_at: float | None = None) -> DiscontinuityMap:
     """The discontinuity mapping of `system` at its clearance.
 

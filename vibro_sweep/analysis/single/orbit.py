@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from vibro_sweep.analysis.single.exponent_array import Exponents
 from vibro_sweep.analysis.single.result import Result, event_table, shows_force
-from vibro_sweep.checks.arguments import LATEST, checked_count, checked_times
+from vibro_sweep.checks.arguments import LATEST, checked_count, checked_times, names_its_arguments
 from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.checks.real import number_of
 from vibro_sweep.checks.refusals import not_allowed
@@ -180,6 +180,7 @@ class Orbit(Result):
         return engine.to_masses(result)
 
 
+@names_its_arguments
 def simulate(system: AnyOscillator, state: ArrayLike, periods: int, start_time: float = 0.0) -> Orbit:
     """Simulate one orbit of the impact oscillator (3), (4).
 
@@ -273,6 +274,7 @@ def _carried(engine: Engine, section: np.ndarray) -> _Carried:
     return hits, rests, [*contacts, open_contact], chatters, outcome
 
 
+@names_its_arguments
 def lyapunov(system: AnyOscillator, state: ArrayLike, transient: int = 1000, record: int = 10_000) -> Exponents:
     """Lyapunov spectrum (2N,) of the orbit from `state` at t = 0: descending, natural logarithm, per unit time.
 

@@ -89,12 +89,15 @@ def _check(given) -> None:
         raise ParameterError(several[1], wording.plain(given[several[1]]), f"left out where {several[0]} is given")
 
 
+WITHOUT_SYMMETRY = {"C": "; gyroscopic forces are not computed", "K": "; circulatory forces are not computed"}
+
+
 def _check_symmetric(name: str, matrix: np.ndarray) -> None:
     apart = np.abs(matrix - matrix.T)
     if apart.max() > ROUNDING * np.abs(matrix).max():
         i, j = (int(one) for one in np.unravel_index(apart.argmax(), apart.shape))
         entries = f"entries {i + 1}, {j + 1} and {j + 1}, {i + 1} differ: {matrix[i, j]:g} and {matrix[j, i]:g}"
-        raise ParameterError(name, matrix.tolist(), f"symmetric; {entries}")
+        raise ParameterError(name, matrix.tolist(), f"symmetric; {entries}{WITHOUT_SYMMETRY.get(name, '')}")
 
 
 def _depending(given) -> dict[str, str]:
