@@ -29,7 +29,8 @@ ROOMS = ("analysis", "driver", "engine", "model", "tables")  # of the package
 FIRST = 40  # tests that are collected first
 FAST, SLOW = "not slow", "slow"
 SUBJECTS = {  # folders of the slow tests of a room
-    "analysis": ("orbits",), "driver": ("sweeps", "files", "commands"), "engine": ("accuracy", "engine", "sweeps"),
+    "analysis": ("orbits",), "driver": ("sweeps", "files", "commands"),
+    "engine": ("accuracy", "engine", "orbits", "sweeps"),
     "model": ("scenes", "accuracy"), "tables": ("scenes", "files"),
 }  # fmt: skip
 CHANGES = {
@@ -135,7 +136,7 @@ def slow_tests(work: Path) -> list[str]:
 def of_subject(tests: list[str], name: str) -> list[str]:
     """The tests of the subject of a file of the package, those with words of its name first."""
     folders, words = SUBJECTS[name.split("/")[1]], [word for word in Path(name).stem.split("_") if len(word) > 3]
-    near = [test for test in tests if any(word in test for word in words)]
+    near = [test for test in tests if any(word in test.removeprefix("tests/") for word in words)]
     return near + [test for test in tests if test.split("/")[1] in folders and test not in near]
 
 
