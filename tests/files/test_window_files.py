@@ -144,3 +144,15 @@ def test_what_an_interrupted_run_has_left_is_named(tmp_path, monkeypatch, capsys
     (tmp_path / "some.h5.pieces").mkdir()
     assert main(["info", "some.h5"]) == 2
     assert "some.h5.pieces beside it is of a run that was interrupted" in capsys.readouterr().err
+
+
+def test_of_a_long_table_a_command_prints_the_beginning_and_the_end(few, file, monkeypatch, capsys):  # noqa: F811
+    monkeypatch.setattr("vibro_sweep.cli.computing.FIRST", 3)
+    monkeypatch.setattr("vibro_sweep.cli.computing.LAST", 2)
+    assert main(["info", str(file)]) == 0
+    whole = [line for line in capsys.readouterr().out.splitlines() if line]
+    begin = next(i for i, line in enumerate(whole) if line.startswith("windows in b"))
+    assert main(["windows", str(few), "-o", str(file)]) == 0  # it is complete
+    name, *lines = capsys.readouterr().out.splitlines()
+    assert (name, lines[:3]) == (str(file), whole[begin : begin + 3]) and len(lines) == 6
+    assert f" lines more: vibro-sweep info {file}" in lines[3] and lines[4] in whole and lines[5] in whole

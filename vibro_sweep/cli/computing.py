@@ -110,8 +110,15 @@ def compute_windows(computation: Computation, file: Path, parameter: str | None)
         say_tables(computation.output)
 
 
+FIRST, LAST = 40, 12  # lines that are printed of a long table
+
+
 def say_tables(output: Path) -> None:
-    """Print what a file of branches, curves or windows holds."""
+    """Print what a file of branches, curves or windows holds; of a long table the beginning and the end."""
     from .info import tables
 
-    say("\n".join([f"{output}", *tables(output)]))
+    lines = tables(output)
+    left_out = len(lines) - FIRST - LAST
+    if left_out > 0:
+        lines[FIRST:-LAST] = [f"  ... {left_out:,} lines more: vibro-sweep info {shlex.quote(str(output))}"]
+    say("\n".join([f"{output}", *lines]))

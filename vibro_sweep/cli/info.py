@@ -128,8 +128,9 @@ def _to_go(sweep: Sweep) -> str:
     needed = needed[np.isfinite(needed) & (needed > 0)]
     if not len(needed):
         return ""
-    longest = float(f"{needed.max():.2g}")
-    return f"; {len(needed):,} arrive at a periodic orbit after up to about {longest:,.0f} periods more (`settle`)"
+    half, longest = (f"{float(f'{periods:.2g}'):,.0f}" for periods in (np.median(needed), needed.max()))
+    most = "" if half == longest else f", half of them within {half}"
+    return f"; {len(needed):,} arrive at a periodic orbit within about {longest} periods more (`settle`){most}"
 
 
 def _turning(sweep: Sweep) -> list[str]:
