@@ -163,7 +163,7 @@ def test_file_of_another_version_is_kept(scene_folder, capsys, monkeypatch):
 
 def test_bad_points_are_counted_by_name(scene_folder, capsys, monkeypatch):
     report = SimpleNamespace(
-        points=1003, bad=3, statuses={"ok": 1000, "not_finite": 2, "beyond_a_stop": 1}, seconds=1.234, computed=1
+        points=1003, bad=3, statuses={"ok": 1000, "not_finite": 2, "beyond_a_stop": 1}, seconds=1.234, computed=1003
     )
     monkeypatch.setattr("vibro_sweep.driver.run.run", lambda *_: report)
     assert main(["run", "good.yaml"]) == 1

@@ -7,8 +7,6 @@ from pathlib import Path
 
 import typer
 
-from vibro_sweep.checks.file_names import SUFFIX
-
 from .console import INTERRUPTED, InputError
 
 # what other programs call it
@@ -67,8 +65,8 @@ def _explained(error) -> str:
     elif found := re.search(r"[Ff]ile '([^']*)' does not exist", text):
         near = _file_meant(found[1])
         hint = f"did you mean {near}?" if near else ""
-        if Path(found[1] + SUFFIX).is_dir():
-            hint = f"{found[1]}{SUFFIX} beside it is of a run that was interrupted, which --resume continues"
+        if Path(f"{found[1]}.pieces").is_dir():
+            hint = f"{found[1]}.pieces beside it is of a run that was interrupted, which --resume continues"
     return f"{text}; {hint}" if hint else text
 
 

@@ -8,7 +8,7 @@ from vibro_sweep.scene import Scene
 
 def whole_block(scene: Scene, wanted: Collection[str]) -> Block:
     """All points and starts of a sweep that does not follow, as one block. wanted: datasets to be computed."""
-    (block,) = blocks(scene, scene.n_points)
+    (block,) = blocks(scene, lambda: scene.n_points)
     return block._replace(wanted=frozenset(wanted))
 
 

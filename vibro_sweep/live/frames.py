@@ -89,7 +89,7 @@ def _frames(
     scene: Scene, wanted: frozenset[str], preview: Preview | None, seconds: float, pace: Pace
 ) -> Iterator[Frame]:
     follow = scene.start.kind == "follow"
-    whole = next(blocks(scene, scene.n_points)) if follow else whole_block(scene, wanted)
+    whole = next(blocks(scene, lambda: scene.n_points)) if follow else whole_block(scene, wanted)
     if preview is not None:
         yield _preview(scene, whole, wanted, preview, pace)
     yield from _chain(scene, whole, wanted, seconds, pace) if follow else _interlaced(whole, seconds, pace)
@@ -113,7 +113,7 @@ def _chain(scene: Scene, whole: Block, wanted: frozenset[str], seconds: float, p
     """The parts of one chain, or of two."""
     columns = len(next(iter(scene.sweep.values())))
     length = -(-columns // pace.pieces(whole._replace(wanted=wanted), seconds))
-    chains = [*blocks(scene, scene.n_points, most_orbits=LANES * length)]
+    chains = [*blocks(scene, lambda: scene.n_points, most_orbits=LANES * length)]
     for n, chain in enumerate(chains):
         block = chain._replace(wanted=wanted)
         while True:
