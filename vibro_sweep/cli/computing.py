@@ -11,6 +11,8 @@ from . import interrupt
 from .console import InputError, all_is_imported, input_errors, messages, say
 from .options import executor_of
 
+FIRST, LAST = 40, 12  # lines that are printed of a long table
+
 
 @dataclass(frozen=True)
 class Computation:
@@ -108,9 +110,6 @@ def compute_windows(computation: Computation, file: Path, parameter: str | None)
         run_windows(file, computation.output, parameter, computation.workers, executor, progress, computation.mode)
     if not computation.quiet:
         say_tables(computation.output)
-
-
-FIRST, LAST = 40, 12  # lines that are printed of a long table
 
 
 def say_tables(output: Path) -> None:

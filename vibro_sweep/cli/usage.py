@@ -65,9 +65,15 @@ def _explained(error) -> str:
     elif found := re.search(r"[Ff]ile '([^']*)' does not exist", text):
         near = _file_meant(found[1])
         hint = f"did you mean {near}?" if near else ""
-        if Path(f"{found[1]}.pieces").is_dir():
-            hint = f"{found[1]}.pieces beside it is of a run that was interrupted, which --resume continues"
+        if (pieces := Path(found[1] + _suffix_of_pieces())).is_dir():
+            hint = f"{pieces} beside it is of a run that was interrupted, which --resume continues"
     return f"{text}; {hint}" if hint else text
+
+
+def _suffix_of_pieces() -> str:
+    from vibro_sweep.checks.file_names import SUFFIX  # `--help` must not wait for numpy
+
+    return SUFFIX
 
 
 def _command_meant(word: str, context) -> str:
