@@ -52,6 +52,7 @@ KINDS = {  # its study, in tests/support
     "extreme-numbers": "any_scenes.study_of_extremes",
     "same-bits": "same_bits.study",
     "arrivals": "arrivals.study",
+    "settling": "arrivals.study_of_settle",
     "files": "fuzz_files.study",
     "kills": "kills.study",
     "units": "units.study",

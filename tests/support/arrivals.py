@@ -8,6 +8,7 @@ from support.searching import Report, new_report
 LONGER = 31  # times the periods up to the end of the record
 FAR = 1e-5  # of the sizes of coordinates: no orbit that is ok with a period may be farther from it
 THERE = 1e-7  # of the sizes: the first points of a record that are nearer to the periodic orbit had arrived
+MOST = 3_000_000  # periods of `settle`
 MASSES = ("one", "two", "isolator", "free", "ball")
 
 
@@ -43,9 +44,10 @@ def drawn(rng: np.random.Generator) -> vs.Oscillator:
     )  # fmt: skip
 
 
-def recorded(system: vs.Oscillator, transient: int, record: int, *more: str):
+def recorded(system: vs.Oscillator, transient: int, record: int, *more: str, settle: int | None = None):
     """The Dataset of one column, and its section points (record, 2 N)."""
-    data = vs.sweep(system, {"b": [system.b]}, transient=transient, record=record, observe=["section", *more])
+    how = {"transient": transient, "settle": settle, "record": record, "observe": ["section", *more]}
+    data = vs.sweep(system, {"b": [system.b]}, **how)
     names = [name for k in range(1, system.masses + 1) for name in (f"x{k}", f"v{k}")]
     return data, np.stack([data[name].values[0] for name in names], axis=-1)
 
@@ -77,3 +79,21 @@ def study(seed: int) -> Report:
     if period > 0 and P > 0 and min(a[-1].max() for a in apart) > FAR:
         report.wrong.append(f"seed {seed}: period {period} at {min(a[-1].max() for a in apart):.1e} from the orbit")
     return report
+
+
+def study_of_settle(seed: int) -> Report:
+    """Does a machine that goes on until it has arrived take more than twice what it needs?"""
+    rng = np.random.default_rng([seed, 77])
+    system, transient, record = drawn(rng), int(10 ** rng.uniform(2, 3.5)), int(rng.integers(40, 201))
+    data, _ = recorded(system, transient, record, settle=MOST)
+    arrived, took = data.status.item() == 0 and data.period.item() > 0, data.transient_periods.item()
+    went_on = arrived and took > transient
+    too_long = False
+    if went_on:
+        half, _ = recorded(system, max((took + record) // 2 - record - 1, transient), record)
+        too_long = half.status.item() == 0 and half.period.item() > 0
+    return new_report(
+        machines=1, arrived=int(arrived), went_on=int(went_on), took_more_than_twice=int(too_long),
+        not_arrived=int(data.status.item() == 6),
+        without_a_period=int(data.status.item() == 0 and data.period.item() == 0),
+    )  # fmt: skip
