@@ -71,15 +71,14 @@ if TYPE_CHECKING:
     from vibro_sweep.driver.windows import windows
     from vibro_sweep.files.file_errors import StoreError
     from vibro_sweep.live.served_page import explore
-    from vibro_sweep.model.general import Oscillator
     from vibro_sweep.model.grazing import grazing
-    from vibro_sweep.model.oscillator import System
+    from vibro_sweep.model.oscillator import Oscillator, System
     from vibro_sweep.plotting import PlotError
     from vibro_sweep.plotting.front import plot
     from vibro_sweep.scene import SceneError, load_scene
 else:
     _HOME = {
-        "Oscillator": "model.general",
+        "Oscillator": "model.oscillator",
         "ParameterError": "checks.refusals",
         "PlotError": "plotting",
         "RunError": "driver.compute",

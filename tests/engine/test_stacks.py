@@ -19,7 +19,7 @@ SWEPT = {
 }
 
 
-def drawn(rng: np.random.Generator) -> tuple[vs.types.AnyOscillator, str]:
+def drawn(rng: np.random.Generator) -> tuple[vs.Oscillator, str]:
     """An oscillator of any model and one of its numbers. Springs and dampers may be missing, or differ by 10^6."""
     name = rng.choice([*SWEPT])
     stops = dict(omega=rng.uniform(0.1, 2), b=rng.uniform(0.2, 2))

@@ -1,7 +1,6 @@
 """Parameters, modes, steady response and Theorem 1, against scipy, complex numpy and 40-digit arithmetic."""
 
 import math
-from dataclasses import FrozenInstanceError
 
 import numpy as np
 import pytest
@@ -141,7 +140,7 @@ def test_the_ends_of_the_allowed_ranges():
 
 
 def test_frozen_and_replace():
-    with pytest.raises(FrozenInstanceError):
+    with pytest.raises(AttributeError, match="is not changed"):
         PAPER.b = 7.0
     other = PAPER.replace(b=np.float64(7), mu_m=np.int64(3))
     assert (other.b, other.mu_m, other.R, PAPER.b) == (7.0, 3.0, 0.8, 6.6)

@@ -138,6 +138,8 @@ def calls(made: dict[str, Any]) -> dict[str, Call]:
     observe = each("observe", ["section"], {"section"}, ("section", "impacts"), (word for word in ["section"]))
     observe["observe"][-1] = {"observe": np.array(["section"])}
     trajectory = each("trajectory", None, {"periods": 1, "samples": 3})
+    of_model = each("name", "one_mass", np.str_("one_mass"))
+    of_model["given"] = [{"zeta": 0.1, "F": 1, "omega": 1, "R": 0.5, "b": 0.3, "base": one} for one in (True, False)]
     simulated, mapping, scene = made["Orbit"], made["DiscontinuityMap"], made["Scene"]
     times = each("times", 0.0, [0.0, 1.0], np.array([1.0]), [], xr.DataArray([0.5]), range(2))
     return {
@@ -145,11 +147,8 @@ def calls(made: dict[str, Any]) -> dict[str, Call]:
         "System.physical": Call(vs.System.physical, of_physical),
         "System.replace": Call(SYSTEM.replace, any_of("changes", of_system)),
         "Oscillator": Call(vs.Oscillator, pair),
-        "Oscillator.named": Call(
-            vs.Oscillator.named,
-            each("name", "one_mass", np.str_("one_mass"))
-            | {"given": [{"zeta": 0.1, "F": 1, "omega": 1, "R": 0.5, "b": 0.3, "base": one} for one in (True, False)]},
-        ),
+        "Oscillator.named": Call(vs.Oscillator.named, of_model),
+        "System.named": Call(vs.System.named, of_model),
         "Oscillator.replace": Call(made["Oscillator"].replace, any_of("changes", of_pair)),
         "grazing": Call(vs.grazing, system),
         "simulate": Call(

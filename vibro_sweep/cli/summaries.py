@@ -5,13 +5,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.contact_laws import LAWS
 from vibro_sweep.model.contact_laws.contact_law import ContactLaw
 from vibro_sweep.model.grazing import Grazing, grazing
 from vibro_sweep.model.linear import static_state
 from vibro_sweep.model.models import MODELS
 from vibro_sweep.model.models.declaration import Model, Option
+from vibro_sweep.model.oscillator import Oscillator
 from vibro_sweep.tables.coordinates import state as names
 from vibro_sweep.tables.outcomes import STATUSES
 from vibro_sweep.tables.quantity import Parameter
@@ -37,7 +37,7 @@ def grazing_of(scene: "Scene | Continuation") -> str:
     return "\n".join(lines)
 
 
-def _grazing_curve(system: AnyOscillator, key: str, values: list[float]) -> str:
+def _grazing_curve(system: Oscillator, key: str, values: list[float]) -> str:
     touches = [grazing(system.replace(**{key: value})) for value in values]
     alike = all(touch.b_right == touch.b_left for touch in touches)
     lines = [f"# {key} {'b*' if alike else 'b_right b_left'} tau*"]
@@ -47,7 +47,7 @@ def _grazing_curve(system: AnyOscillator, key: str, values: list[float]) -> str:
     return "\n".join(lines)
 
 
-def grazing_text(touch: Grazing, system: AnyOscillator) -> str:
+def grazing_text(touch: Grazing, system: Oscillator) -> str:
     """The text of Theorem 1 that `grazing` prints, with the stops that there are."""
     stops = system.options.get("stops", "both")
     alike = touch.b_right == touch.b_left

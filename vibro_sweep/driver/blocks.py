@@ -11,8 +11,8 @@ from vibro_sweep.driver.code_hash import code_hash
 from vibro_sweep.engine import points
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.variational.spectrum import BATCHES
-from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.grid import grid
+from vibro_sweep.model.oscillator import Oscillator
 from vibro_sweep.results.boxes import boxes
 from vibro_sweep.results.layout import quantities
 from vibro_sweep.scene import Scene
@@ -31,7 +31,7 @@ class Block(NamedTuple):
     box: tuple[slice, ...]  # over the sweep's dimensions; of some of the starts, or of two directions, over `start` too
     shape: tuple[int, ...]  # of the whole sweep
     plan: points.Plan
-    system: AnyOscillator
+    system: Oscillator
     axes: dict[str, np.ndarray]  # values of the swept numbers in the box, those of the start among them
     starts: np.ndarray | tuple[int, int]  # (s, 4) for all points; or (count, seed), drawn at each
     from_rest: bool  # at rest, and where zero is behind a stop, held by that

@@ -18,11 +18,11 @@ from vibro_sweep.results import layout
 from vibro_sweep.scene import Scene
 
 PLACES = 8  # of the sweep, at which orbits are computed, at most
-ENOUGH, LONGEST = (
-    0.1,
-    1.0,
-)  # seconds of a measurement: from the first on it may be the last one, from the second on it is
+ENOUGH = 0.1  # seconds of a measurement from which it may be the last one
+LONGEST = 0.6  # seconds of all of them from which no other one begins
+SHORT = 0.3  # seconds that one period of all these orbits may take
 GROWN = 1.5  # times longer than the one before the last one takes, so that periods count in it
+MANY = 8 * LANES  # orbits side by side at a place, at most
 LONGER = 4  # times as many periods in the next measurement
 
 
@@ -80,21 +80,27 @@ def threads_of(scene: Scene, workers: int) -> int:
 def orbit_seconds(scene: Scene, workers: int) -> float:
     """CPU seconds of an orbit in the blocks of a run.
 
-    A block has tables to be filled, and an orbit a record to be looked through, besides its periods. So the time of a
-    few periods is compared with that of more, until these take a moment, and the difference alone is multiplied.
+    A block has tables to be filled, and an orbit a record to be looked through, besides its periods: their time is that
+    of one period of a large block. That of periods follows from orbits spread over the sweep: the time of a few is
+    compared with that of more, until these take a moment, and the difference alone is multiplied.
     """
-    total, periods, most = scene.transient + scene.record, 1, BlockSize(scene, scene.n_points, workers, 1.0, None).most
-    beside, (now, _) = 1, _timed(scene, 1, 1, 1)
+    total, most = scene.transient + scene.record, BlockSize(scene, scene.n_points, workers, 1.0, None).most
+    beside, (now, orbits) = 1, _timed(scene, 1, 1, 1)
     while now < ENOUGH / PLACES and beside < most:
         beside = min(LANES * beside, most)
-        now, _ = _timed(scene, 1, beside, 1)
-    places, before, slope = max(1, int(min(PLACES, ENOUGH / max(now, 1e-9)))), 0.0, 0.0
-    now, orbits = _timed(scene, places, beside, 1)
-    while periods < total and (periods == 1 or now < min(LONGEST, max(ENOUGH, GROWN * before))):
+        now, orbits = _timed(scene, 1, beside, 1)
+    once, block, beside = now / orbits, now * min(1.0, MANY / beside), min(beside, MANY)
+    places = max(1, int(min(PLACES, SHORT / max(block, 1e-9))))
+    (now, orbits), periods, shorter, before, slope = _timed(scene, places, beside, 1), 1, 1, 0.0, 0.0
+    spent = now
+    while periods < total and (periods == 1 or (now < max(ENOUGH, GROWN * before) and spent < LONGEST)):
         longer = min(LONGER * periods, total)
         before, (now, _) = now, _timed(scene, places, beside, longer)
-        slope, periods = max(0.0, now - before) / (longer - periods), longer
-    return (now + slope * (total - periods)) / orbits
+        slope, periods, shorter, spent = max(0.0, now - before) / (longer - periods), longer, periods, spent + now
+    if spent < LONGEST:  # once more: something else may have run meanwhile
+        now = min(now, _timed(scene, places, beside, periods)[0])
+        slope = max(0.0, now - before) / (periods - shorter) if periods > shorter else 0.0
+    return once + slope * (total - 1) / orbits
 
 
 def _timed(scene: Scene, places: int, beside: int, periods: int) -> tuple[float, int]:

@@ -15,9 +15,8 @@ from vibro_sweep.driver.any_file import open
 from vibro_sweep.driver.provenance import provenance
 from vibro_sweep.driver.sweep import check_how, fill, run_sweep
 from vibro_sweep.files.subject import about_run
-from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.built import Built
-from vibro_sweep.model.oscillator import checked_system
+from vibro_sweep.model.oscillator import Oscillator, checked_system
 from vibro_sweep.results import layout
 from vibro_sweep.results.in_memory import InMemory
 from vibro_sweep.scene import Section, Start, Trajectory, scene_of
@@ -44,7 +43,7 @@ def _first(name: str, values: object) -> float:
 
 @names_its_arguments
 def sweep(
-    system: AnyOscillator | Callable[..., AnyOscillator],
+    system: Oscillator | Callable[..., Oscillator],
     axes: "Mapping[str, np.ndarray | Sequence[float] | Mapping[str, Any]]",
     *,
     observe: Iterable[str] = ("section", "lyapunov"),
@@ -96,7 +95,7 @@ def sweep(
     check_how(workers, None, progress, mode)
     if output is not None:
         output = file_to_write("output", output)
-    if callable(system) and not isinstance(system, AnyOscillator):
+    if callable(system) and not isinstance(system, Oscillator):
         first = {name: _first(name, values) for name, values in axes.items() if name not in START}
         if not accepts(system, **first):
             raise ArgumentTypeError(

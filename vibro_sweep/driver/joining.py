@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from vibro_sweep.model.any_oscillator import AnyOscillator
+from vibro_sweep.model.oscillator import Oscillator
 from vibro_sweep.tables.coordinates import state
 from vibro_sweep.tables.file_columns import OF_FIRST, OF_PARAMETER, columns
 from vibro_sweep.tables.quantity import Quantity
@@ -20,7 +20,7 @@ Arrays = dict[str, np.ndarray]
 
 
 def columns_in_file(
-    kind: str, parameters: list[str], system: AnyOscillator, more: tuple[Quantity, ...] = ()
+    kind: str, parameters: list[str], system: Oscillator, more: tuple[Quantity, ...] = ()
 ) -> list[Quantity]:
     """All variables of a file, and more, in the units of a system."""
     of_each = {name: system.described[name].units for name in parameters}

@@ -28,7 +28,7 @@ from vibro_sweep.driver.source_file import SourceError, run_id_of
 from vibro_sweep.driver.windows import rows_in, search_of
 from vibro_sweep.files.pieces import Pieces
 from vibro_sweep.files.reading import sweep_in
-from vibro_sweep.model.any_oscillator import AnyOscillator
+from vibro_sweep.model.oscillator import Oscillator
 from vibro_sweep.results.sweep_dataset import Sweep
 from vibro_sweep.scene import Continuation, parse_continuation, parse_scene
 from vibro_sweep.tables.bifurcations import CURVES, WAYS
@@ -43,7 +43,7 @@ class NoOrbitError(SourceError):
 class Source(NamedTuple):
     """The oscillator of a scene's branches or curves, and the run id of the file that they begin from, if any."""
 
-    system: AnyOscillator
+    system: Oscillator
     run_id: str
 
 
@@ -106,7 +106,7 @@ def _orbits(scene: Continuation, key: str) -> list[PeriodicOrbit]:
     return _from_branches(scene, key)
 
 
-def _check_same(scene: Continuation, own: AnyOscillator, asked: AnyOscillator) -> None:
+def _check_same(scene: Continuation, own: Oscillator, asked: Oscillator) -> None:
     """Raise ValueError where a file's oscillator is not that of the scene."""
     if own == asked:
         return
@@ -203,7 +203,7 @@ def _special(scene: Continuation) -> tuple[SpecialPoint, list[str]]:
     return special_point(part_of(arrays, branches.SHAPES, names[:1], index), place, names[0], system), names
 
 
-def _at_special(scene: Continuation, data: Sweep) -> tuple[AnyOscillator, list[str]]:
+def _at_special(scene: Continuation, data: Sweep) -> tuple[Oscillator, list[str]]:
     """The oscillator at the scene's special point, and the numbers that vary in the file. Raises ValueError."""
     if data.attrs.get("kind", SWEEP) == SWEEP:
         raise SourceError(f"continue.from.branches: {scene.begin} holds no branches")

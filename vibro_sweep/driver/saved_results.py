@@ -21,8 +21,8 @@ from vibro_sweep.driver.origins import Source, attributes_of
 from vibro_sweep.driver.provenance import provenance
 from vibro_sweep.files.making import make
 from vibro_sweep.files.subject import about_run, check_outputs
-from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.linear import Family
+from vibro_sweep.model.oscillator import Oscillator
 from vibro_sweep.results import ragged_dataset
 from vibro_sweep.scene import Continuation
 from vibro_sweep.tables.bifurcations import CURVES
@@ -78,7 +78,7 @@ def _dataset(result: Saved) -> "xarray.Dataset":
     return ragged_dataset.dataset(about, columns_in_file(kind, names, system), found)
 
 
-def _scene_of(arrays: dict[str, np.ndarray], names: Sequence[str], system: AnyOscillator) -> Continuation:
+def _scene_of(arrays: dict[str, np.ndarray], names: Sequence[str], system: Oscillator) -> Continuation:
     """The scene that follows the same orbits from the state of one of them."""
     value = np.reshape(arrays["value"], (-1, len(names)))
     at = int(arrays.get("branch_origin", len(value) // 2))
@@ -89,7 +89,7 @@ def _scene_of(arrays: dict[str, np.ndarray], names: Sequence[str], system: AnyOs
     return Continuation("result", "", there, "state", begin, period, None, None, bounds, CURVES, (), 0)
 
 
-def _range(system: AnyOscillator, name: str, values: np.ndarray) -> tuple[float, float]:
+def _range(system: Oscillator, name: str, values: np.ndarray) -> tuple[float, float]:
     """The least and the largest value, which a scene has apart: of equal ones a neighbour that is allowed is added."""
     lo, hi = float(values.min()), float(values.max())
     if lo < hi:

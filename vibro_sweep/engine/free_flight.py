@@ -12,8 +12,7 @@ from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.engine.motion.free import find_contacts, find_extremes
 from vibro_sweep.engine.one_system import Engine
 from vibro_sweep.engine.variational.propagator import fly, new_workspace
-from vibro_sweep.model.any_oscillator import AnyOscillator
-from vibro_sweep.model.oscillator import checked_system
+from vibro_sweep.model.oscillator import Oscillator, checked_system
 from vibro_sweep.model.sensitivity import motion
 
 
@@ -40,7 +39,7 @@ class FreeFlight:
     All methods raise ValueError for states of another shape, and for numbers that are not finite.
     """
 
-    def __init__(self, system: AnyOscillator):
+    def __init__(self, system: Oscillator):
         checked_system(system)
         self._engine = Engine(system)
         self._q = system.linear

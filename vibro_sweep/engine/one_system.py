@@ -105,7 +105,9 @@ def is_paper(system, axes: dict[str, np.ndarray] | None = None) -> bool:
     axes : values for some of its numbers, for all of which it must be
     """
     axes = axes or {}
-    if not isinstance(system, System) or "mu_c" in axes or not (system.mu_c is None or system.mu_c == system.mu_k):
+    if not isinstance(system, System) or not system.in_closed_form(axes):
+        return False
+    if "mu_c" in axes or system.mu_c not in (None, system.mu_k):
         return False
     if has_compliant(system.numbers):
         return False

@@ -25,10 +25,9 @@ from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.variational.grazing_map import Expansion, iterate
 from vibro_sweep.engine.variational.parameter_sensitivity import Equations, differentiate
 from vibro_sweep.engine.variational.propagator import new_workspace
-from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.linear import Linear, gap_response, rigid_family_of
 from vibro_sweep.model.models.two_mass import NAMES
-from vibro_sweep.model.oscillator import System, checked_system
+from vibro_sweep.model.oscillator import Oscillator, System, checked_system
 from vibro_sweep.model.sensitivity import grazing_state, grazing_state_slopes, motion, motion_slopes
 from vibro_sweep.tables import outcomes as status
 
@@ -67,7 +66,7 @@ class PeriodMap:
         oscillator that is not symmetric, or has no steady motion.
     """
 
-    def __init__(self, system: AnyOscillator, order: int = 0, expand_at: float | None = None):
+    def __init__(self, system: Oscillator, order: int = 0, expand_at: float | None = None):
         checked_system(system)
         rigid_family_of(system, "period map")
         if order not in (0, 1, 2):
@@ -230,7 +229,7 @@ def _scratch(e: Equations, columns: int) -> tuple:
     return np.empty(size), np.empty((size, columns)), np.empty((2, masses)), new_workspace(size, len(e.columns))
 
 
-def _check_symmetric(system: AnyOscillator) -> None:
+def _check_symmetric(system: Oscillator) -> None:
     """Check what the discontinuity mapping needs: the two halves of a period are mirror images, and a steady motion."""
     q = system.linear
     if getattr(system, "offset", 0.0) != 0 or q.R_low != q.R_high or np.any(q.constant):

@@ -11,7 +11,7 @@ from vibro_sweep.driver.block_columns import whole_block
 from vibro_sweep.driver.compute import compute
 from vibro_sweep.live.requests import View
 from vibro_sweep.live.views import scene_of_view
-from vibro_sweep.model.any_oscillator import AnyOscillator
+from vibro_sweep.model.oscillator import Oscillator
 from vibro_sweep.scene import Scene, Section
 from vibro_sweep.tables.coordinates import state
 from vibro_sweep.tables.outcomes import is_valid, status_of
@@ -25,7 +25,7 @@ RELAXING = 300  # forcing periods passed first where stops relax: where these ar
 class Settled(NamedTuple):
     """An orbit after its transient: its oscillator, where it ends, its section points (record, 2 N), what is known."""
 
-    system: AnyOscillator
+    system: Oscillator
     end: np.ndarray
     section: np.ndarray
     period: int
@@ -51,11 +51,11 @@ def settled(view: View, value: float, start: int, end: np.ndarray | None) -> Set
     return _computed(one, system, start, scene.start.kind == "follow" and end is None)
 
 
-def _lead(system: AnyOscillator) -> int:
+def _lead(system: Oscillator) -> int:
     return RELAXING if system.linear.by_force else 0
 
 
-def _computed(scene: Scene, system: AnyOscillator, start: int, alone: bool) -> Settled:
+def _computed(scene: Scene, system: Oscillator, start: int, alone: bool) -> Settled:
     names = state(system.masses)
     _, arrays = compute(whole_block(scene, [*names, "period", "lyapunov", "lyapunov_error", "status", "end"]))
     if scene.n_starts > 1:

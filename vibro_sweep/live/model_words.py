@@ -7,11 +7,11 @@ import numpy as np
 
 from vibro_sweep.live.requests import View
 from vibro_sweep.live.views import SPEEDS, heights
-from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.catalogue import BY_NAME
 from vibro_sweep.model.checked_numbers import range_of
 from vibro_sweep.model.contact_laws.compliant import LAW as COMPLIANT
 from vibro_sweep.model.models import MODELS
+from vibro_sweep.model.oscillator import Oscillator
 from vibro_sweep.model.stops import stop_of
 from vibro_sweep.plotting.style import CHAOS, EXPONENTS, LONGER, LONGEST, NO_PERIOD, PERIODS, density_colours
 from vibro_sweep.scene import Scene
@@ -53,7 +53,7 @@ def model_words(scene: Scene, view: View) -> dict[str, Any]:
     }
 
 
-def _value(system: AnyOscillator, view: View, one: Parameter) -> Any:
+def _value(system: Oscillator, view: View, one: Parameter) -> Any:
     """What a number is; of one that is left out what it follows, or what a compliant stop has without it."""
     given = {**system.numbers, **view.numbers}
     for side in ("right", "left"):

@@ -11,7 +11,7 @@ from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.live.extra import needed
 from vibro_sweep.live.presets import described_sweep, scene_of_results, scene_to_explore
 from vibro_sweep.live.views import COLUMNS, span
-from vibro_sweep.model.any_oscillator import AnyOscillator
+from vibro_sweep.model.oscillator import Oscillator
 from vibro_sweep.scene import Scene, scene_of
 from vibro_sweep.scene.written import changed
 
@@ -57,7 +57,7 @@ class LivePage:
 
 @names_its_arguments
 def explore(
-    system: "AnyOscillator | Scene | str | Path | xarray.Dataset",
+    system: "Oscillator | Scene | str | Path | xarray.Dataset",
     parameter: str | None = None,
     bounds: Sequence[float] | None = None,
 ) -> LivePage:
@@ -83,7 +83,7 @@ def explore(
     http://127.0.0.1:...
     >>> page.close()
     """
-    if isinstance(system, AnyOscillator):
+    if isinstance(system, Oscillator):
         scene = _swept(system, "b" if parameter is None else parameter, bounds)
     else:
         scene = _of_a_sweep(system)
@@ -95,7 +95,7 @@ def explore(
     return page
 
 
-def _swept(system: AnyOscillator, parameter: str, bounds: Sequence[float] | None) -> Scene:
+def _swept(system: Oscillator, parameter: str, bounds: Sequence[float] | None) -> Scene:
     checked_word("parameter", parameter, tuple(system.described))
     value = float(system.numbers[parameter])
     lo, hi = span(value) if bounds is None else checked_interval("bounds", bounds, value)

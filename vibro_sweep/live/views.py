@@ -9,7 +9,7 @@ import numpy as np
 
 from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.live.requests import View
-from vibro_sweep.model.any_oscillator import AnyOscillator
+from vibro_sweep.model.oscillator import Oscillator
 from vibro_sweep.scene import Scene, scene_of
 from vibro_sweep.scene.written import data_of
 from vibro_sweep.tables.coordinates import state
@@ -38,7 +38,7 @@ def base_of(view: View) -> Scene:
     return _bases[key]
 
 
-def system_of(view: View) -> AnyOscillator:
+def system_of(view: View) -> Oscillator:
     """The oscillator of a view. Raises SceneError, ParameterError."""
     return base_of(view).system.replace(**view.numbers)
 
@@ -71,12 +71,12 @@ def heights(scene: Scene) -> list[str]:
     return [*state(system.masses), *([] if system.gap_is_x1 else ["gap"]), *speeds]
 
 
-def needed(system: AnyOscillator, y: str) -> list[str]:
+def needed(system: Oscillator, y: str) -> list[str]:
     """The variables of a sweep from which `y` follows."""
     return [*state(system.masses)[1::2]] if y in SPEEDS else [y]
 
 
-def height_of(system: AnyOscillator, y: str, arrays: dict[str, np.ndarray]) -> np.ndarray:
+def height_of(system: Oscillator, y: str, arrays: dict[str, np.ndarray]) -> np.ndarray:
     """What stands on the vertical axis, from the variables of a sweep."""
     if y not in SPEEDS:
         return arrays[y]

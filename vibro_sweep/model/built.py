@@ -8,9 +8,9 @@ import numpy as np
 
 from vibro_sweep.checks.arguments import check_type
 from vibro_sweep.checks.errors import ArgumentError
-from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.linear import Family, Linear
 from vibro_sweep.model.models.declaration import Model
+from vibro_sweep.model.oscillator import Oscillator
 from vibro_sweep.tables.quantity import Parameter
 from vibro_sweep.tables.units import Units
 
@@ -20,15 +20,16 @@ STORED = {  # of a Linear, with the symbol that it has in files
 }  # fmt: skip
 
 
-class Built(AnyOscillator):
+class Built(Oscillator):
     """The System or Oscillator that `function(**numbers)` returns. Raises TypeError where it is neither."""
 
-    def __init__(self, function: Callable[..., AnyOscillator], numbers: Mapping[str, float]):
-        self.function, self.given = function, dict(numbers)
-        self.base, self._same_units = self._made(self.given), True
+    tau = "grazing"  # whatever the function says of it, it may change with every number
+
+    def __init__(self, function: Callable[..., Oscillator], numbers: Mapping[str, float], same_units: bool = True):
+        base = _made(function, numbers)
         named = tuple(Parameter(name, name, name, rf"\mathrm{{{name}}}", free_motion=True) for name in numbers)
-        self.model = Model(BUILD, self.name, "", "", "", named, (), lambda given: self.base.masses, self._linear)
-        self.described = {one.name: one for one in named}
+        model = Model(BUILD, _name(function), "", "", "", named, (), lambda given: base.masses, self._linear)
+        vars(self).update(function=function, base=base, model=model, given=dict(numbers), same_units=same_units)
 
     def __eq__(self, other):
         return isinstance(other, Built) and (self.function, self.given) == (other.function, other.given)
@@ -36,34 +37,28 @@ class Built(AnyOscillator):
     def __hash__(self):
         return hash((self.function, tuple(self.given.items())))
 
+    def __reduce__(self):
+        return Built, (self.function, self.given, self.same_units)
+
     def _linear(self, **numbers) -> Linear:
-        made = self._made(numbers)
+        made = _made(self.function, numbers)
         if made.masses != self.base.masses:
             named = ", ".join(f"{name}={value!r}" for name, value in numbers.items())
             allowed = f"as many as at the first point, {self.base.masses}"
             raise ArgumentError(f"{self.name}({named}): {made.masses} masses are not allowed; there must be {allowed}")
         return made.linear
 
-    def _made(self, numbers: Mapping[str, float]) -> AnyOscillator:
-        made = self.function(**numbers)
-        check_type(f"system, {self.name}(...)", made, AnyOscillator, "a System or an Oscillator")
-        return made
-
     @property
     def units(self) -> Units | None:
-        return self.base.units if self._same_units else None
+        return self.base.units if self.same_units else None
 
     def compare_units(self, numbers: Mapping[str, float]) -> None:
         """It has none from now on if those of the oscillator of these numbers are others."""
-        self._same_units = self._same_units and self._made(numbers).units == self.base.units
+        vars(self)["same_units"] = self.same_units and _made(self.function, numbers).units == self.base.units
 
     @property
     def name(self) -> str:
-        return getattr(self.function, "__name__", "function")
-
-    @property
-    def numbers(self) -> dict[str, Any]:
-        return dict(self.given)
+        return _name(self.function)
 
     @property
     def options(self) -> dict[str, Any]:
@@ -81,12 +76,18 @@ class Built(AnyOscillator):
     def omega(self) -> float:
         return self.base.omega
 
-    tau = "grazing"  # whatever the function says of it, it may change with every number
-
     def replace(self, **changes: Any) -> "Built":
-        made = Built(self.function, self.given | changes)
-        made._same_units = self._same_units
-        return made
+        return Built(self.function, self.given | changes, self.same_units)
+
+
+def _made(function: Callable[..., Oscillator], numbers: Mapping[str, float]) -> Oscillator:
+    made = function(**numbers)
+    check_type(f"system, {_name(function)}(...)", made, Oscillator, "a System or an Oscillator")
+    return made
+
+
+def _name(function: Callable) -> str:
+    return getattr(function, "__name__", "function")
 
 
 def sizes_of(q: Linear) -> dict[str, np.ndarray]:

@@ -5,17 +5,15 @@ import math
 
 import numpy as np
 
-from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.built import Built, sizes_of, stored_of
-from vibro_sweep.model.grazing import resolved
 from vibro_sweep.model.linear import Linear, stack_of, stacked
-from vibro_sweep.model.oscillator import System
-from vibro_sweep.model.stops import followers
+from vibro_sweep.model.oscillator import Oscillator, System
+from vibro_sweep.model.paper_motion import resolved
 
 MOST_COMPARED = 4096
 
 
-def grid(system: AnyOscillator, axes: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+def grid(system: Oscillator, axes: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     """Every number by name, `tau` resolved, and the axes, at each point of a grid of values for some.
 
     Read-only arrays with one dimension for each of `axes`, in their order.
@@ -23,12 +21,12 @@ def grid(system: AnyOscillator, axes: dict[str, np.ndarray]) -> dict[str, np.nda
     numbers = system.numbers
     numbers.update(zip(axes, np.meshgrid(*axes.values(), indexing="ij", sparse=True), strict=True))
     shape = tuple(len(values) for values in axes.values())
-    if isinstance(system, System):
+    if isinstance(system, System) and system.in_closed_form(axes):
         numbers = resolved(numbers)
     else:
         if isinstance(system, Built):
             numbers |= sizes_of(linears(system, axes))
-        numbers |= followers(numbers)
+        numbers |= system.following(numbers)
         numbers = {name: value for name, value in numbers.items() if value is not None}
         if isinstance(numbers.get("tau"), str):
             numbers["tau"] = linears(system, axes).tau
@@ -44,7 +42,7 @@ def _everywhere(value, shape: tuple[int, ...]) -> np.ndarray:
     return np.ndarray(shape, number.dtype, number, 0, (0,) * len(shape))
 
 
-def linears(system: AnyOscillator, axes: dict[str, np.ndarray]) -> Linear:
+def linears(system: Oscillator, axes: dict[str, np.ndarray]) -> Linear:
     """The oscillators at the points of such a grid, phases resolved: a stack of its shape."""
     shape = tuple(len(values) for values in axes.values())
     meshes = zip(axes, np.meshgrid(*axes.values(), indexing="ij"), strict=True)

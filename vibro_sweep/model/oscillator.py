@@ -1,56 +1,273 @@
-"""The impact oscillator (eqs. 3, 4) with its parameters, and from physical quantities."""
+"""The oscillators: `Oscillator`, by its matrices or as a model with a name; `System`, the paper's (eqs. 3, 4)."""
+
+from __future__ import annotations  # help() says ArrayLike, and not all that this may be
 
 import inspect
 import math
-from dataclasses import dataclass, fields
-from dataclasses import replace as dataclass_replace
-from fractions import Fraction
-from typing import Any, ClassVar, Literal
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from functools import cached_property, partial
+from typing import Any, Literal
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from vibro_sweep.checks.arguments import check_type
-from vibro_sweep.checks.real import number_of
+from vibro_sweep.checks.not_computed import why_not_computed
 from vibro_sweep.checks.refusals import ParameterError
-from vibro_sweep.model.any_oscillator import AnyOscillator
-from vibro_sweep.model.checked_numbers import UNITS_ALLOWED, checked_number, range_of, units_from
-from vibro_sweep.model.contact_laws import OTHER_STOPS
-from vibro_sweep.model.contact_laws.rigid import RESTITUTION, RESTITUTION_LEFT
-from vibro_sweep.model.grazing import resolved, with_phase
-from vibro_sweep.model.linear import Family
-from vibro_sweep.model.models.declaration import OF_STOPS, STOPS, Model
-from vibro_sweep.model.models.two_mass import MODEL, PARAMETERS
+from vibro_sweep.model import wording
+from vibro_sweep.model.checked_model import checked, checked_option
+from vibro_sweep.model.checked_numbers import UNITS_ALLOWED
+from vibro_sweep.model.contact_laws import OTHER_STOPS, STOP_NUMBERS
+from vibro_sweep.model.linear import Family, Linear
+from vibro_sweep.model.models import MODELS, model_named
+from vibro_sweep.model.models.declaration import OF_STOPS, STOPS, UNITS, WHICH_STOPS, Model, Option, linear_of
+from vibro_sweep.model.models.two_mass import MODEL, PAPER, PARAMETERS
 from vibro_sweep.model.modes import Modes, modes
-from vibro_sweep.model.stops import check_stops, completed
-from vibro_sweep.tables.parameters import CLEARANCE, OFFSET
-from vibro_sweep.tables.quantity import NOT_NEGATIVE, POSITIVE, Parameter
+from vibro_sweep.model.paper_motion import KNOWN, resolved, with_phase
+from vibro_sweep.model.physical import PHYSICAL, in_numbers
+from vibro_sweep.model.stops import completed, followers
+from vibro_sweep.tables.parameters import PHASE
+from vibro_sweep.tables.quantity import Parameter
 from vibro_sweep.tables.units import Units
 
-Stops = Literal["both", "right", "left"]
-Release = Literal["displacement", "force"]
 
-PHYSICAL = (  # quantities in SI units, from which the numbers of a System follow (section 2 of the paper)
-    Parameter("M1", "mass 1", "mass between the stops", "M_1", "kg", POSITIVE),
-    Parameter("M2", "mass 2", "second mass", "M_2", "kg", POSITIVE),
-    Parameter("K1", "stiffness 1", "stiffness between the masses", "K_1", "N m-1", POSITIVE),
-    Parameter("K2", "stiffness 2", "stiffness between the second mass and the ground", "K_2", "N m-1", NOT_NEGATIVE),
-    Parameter("C1", "damping 1", "damping between the masses", "C_1", "N s m-1", NOT_NEGATIVE),
-    Parameter("C2", "damping 2", "damping between the second mass and the ground", "C_2", "N s m-1", NOT_NEGATIVE),
-    Parameter("P1", "force 1", "amplitude of the force on the first mass", "P_1", "N", NOT_NEGATIVE),
-    Parameter("P2", "force 2", "amplitude of the force on the second mass", "P_2", "N", NOT_NEGATIVE),
-    Parameter("Omega", "forcing frequency", "angular frequency of the force, 2 pi times that in Hz", r"\Omega",
-              "rad s-1", POSITIVE),
-    RESTITUTION,
-    dataclass_replace(CLEARANCE, name="B", symbol="B", text="clearance on each side, from the middle to a stop"),
-    dataclass_replace(OFFSET, name="B0", symbol="B_0",
-                      text="middle of the stops, from where the first mass rests without a force"),
-    RESTITUTION_LEFT,
-    *OTHER_STOPS,
-)  # fmt: skip
+class Oscillator:
+    """M x'' + C x' + K x = constant + omega^force_power (force sin(omega t + tau) + force_cos cos(omega t + tau)).
+
+    The stops keep the gap g = n . x, n the contact normal, from offset - b to offset + b; an impact takes g' to -R g'.
+
+    Parameters
+    ----------
+    M, K : (N, N), symmetric; M positive definite, K positive semidefinite
+    C, modal_damping, rayleigh : at most one; a matrix as K, a ratio for each mode, alpha and beta of alpha M + beta K
+    force, force_cos, constant, contact_normal : (N,); a force of 0 acts on no mass
+    R, R_left : restitution of rigid stops; R_left, of the left one, is R where it is left out
+    k_stop, c_stop, preload : of compliant stops, in place of R: in contact the force k_stop delta + c_stop delta' +
+        preload acts on the gap, delta the way behind the stop; with `_left` of the left one
+    release : displacement, a contact ends where delta = 0; force, where its force is zero
+    tau : phase in radians, or "grazing": where the gap of the free motion is largest at t = 0
+    stops : both, right, left; b may be <= 0 where there is one
+    units : for labels: SI; or what a mass, a length and a time of 1 are in kg, m and s; left out: nondimensional
+
+    Numbers are attributes: `force`, and `force1`, `force2`, ... too. Raises ParameterError for what cannot be.
+    `Oscillator.named("chain", m=..., ...)` makes the other models (`vibro-sweep models`).
+
+    Examples
+    --------
+    A mass on a spring: its motion without stops has the amplitude 1/sqrt((1 - omega^2)^2 + (2 zeta omega)^2).
+
+    >>> import vibro_sweep as vs
+    >>> mass = vs.Oscillator([[1]], [[1]], modal_damping=0.05, force=[1], contact_normal=[1], omega=0.8, R=0.7, b=1.5)
+    >>> round(vs.grazing(mass).b, 6)
+    2.711631
+    """
+
+    def __init__(
+        self, M: ArrayLike, K: ArrayLike, C: ArrayLike | None = None, *, modal_damping: ArrayLike | None = None,
+        rayleigh: ArrayLike | None = None, force: ArrayLike = 0, force_cos: ArrayLike = 0, constant: ArrayLike = 0,
+        force_power: float = 0, contact_normal: ArrayLike, omega: float, b: float, offset: float = 0.0,
+        R: float | None = None, R_left: float | None = None, k_stop: float | None = None, c_stop: float | None = None,
+        preload: float | None = None, k_stop_left: float | None = None, c_stop_left: float | None = None,
+        preload_left: float | None = None, release: Literal["displacement", "force"] = "displacement",
+        tau: float | Literal["grazing"] = "grazing",
+        stops: Literal["both", "right", "left"] = "both",
+        units: Literal["SI"] | ArrayLike | None = None,
+    ) -> None:  # fmt: skip
+        given = {name: value for name, value in locals().items() if name != "self"}
+        self._set(MODELS["linear"], given)
+
+    def _set(self, model: Model, given: Mapping[str, Any]) -> None:
+        vars(self).update(model=model, given=checked(model, given))
+
+    @classmethod
+    def named(cls, name: str, **given: Any) -> Oscillator:
+        """A model by its name, as it is in a scene; of `two_mass` a System.
+
+        Examples
+        --------
+        >>> import vibro_sweep as vs
+        >>> ball = vs.Oscillator.named(
+        ...     "one_mass", k=0, zeta=0, F=1, constant=-0.5, omega=1, R=0.5, b=0, stops="left"
+        ... )
+        >>> ball.masses, ball.replace(R=0.6).R
+        (1, 0.6)
+        """
+        return _made(model_named(name), given)
+
+    def _set(self, model: Model, given: Mapping[str, Any]) -> None:
+        object.__setattr__(self, "model", model)
+        object.__setattr__(self, "given", checked(model, given))
+
+    def __setattr__(self, name, value):
+        raise AttributeError(f"{name}: an Oscillator is not changed; `replace` makes another one")
+
+    def __getattr__(self, name: str):
+        if name.startswith("_") or name in ("model", "given"):  # while it is unpickled there is nothing yet
+            raise AttributeError(name)
+        if name in self.given:
+            return self.given[name]
+        if name in self.described:
+            return self.numbers[name]
+        raise AttributeError(f"{name!r} is not a number of the model {self.model.name}")
+
+    def __dir__(self) -> list[str]:
+        """The attributes and the numbers, those of lists one by one, for a prompt that completes names."""
+        return [*super().__dir__(), *self.given, *self.described]
+
+    def __reduce__(self):
+        return _again, (self.model.name, self.given)
+
+    def __eq__(self, other):
+        return isinstance(other, Oscillator) and (self.model.name, self.given) == (other.model.name, other.given)
+
+    def __hash__(self):
+        return hash((self.model.name, tuple(self.given.values())))
+
+    def __repr__(self) -> str:
+        arguments, complete = wording.arguments(self.given)
+        by_call = complete and self.model.name == "linear"
+        return f"Oscillator({arguments})" if by_call else f"<{self.model.name}: {arguments}>"
+
+    @cached_property
+    def described(self) -> dict[str, Parameter]:
+        """The numbers, those of lists one by one: m1, m2, ..."""
+        numbers, units = self.numbers, self.model.depending(self.given)
+        flat = self.model.flat(self.masses)
+        return {name: replace(one, units=units.get(name, one.units)) for name, one in flat.items() if name in numbers}
+
+    @property
+    def numbers(self) -> dict[str, Any]:
+        """Their values, as given; `tau` may be a word, what follows another number None."""
+        result = {}
+        for one in self.model.numbers:
+            value = self.given[one.name]
+            if one.each:
+                result |= {f"{one.name}{i}": entry for i, entry in enumerate(value or (), 1)}
+            else:
+                result[one.name] = value
+        return result
+
+    @property
+    def options(self) -> dict[str, Any]:
+        """What is not a number: which stops there are, the units, matrices."""
+        return {one.name: self.given[one.name] for one in self.model.options}
+
+    @property
+    def units(self) -> Units | None:
+        """What a mass, a length and a time of 1 are; None: its numbers are nondimensional."""
+        return self.given["units"]
+
+    @property
+    def masses(self) -> int:
+        """N."""
+        return self.model.masses(self.given)
+
+    @property
+    def family(self) -> Family:
+        """The same oscillator by its numbers, with their derivatives."""
+        return Family(partial(_build, self.model.name, tuple(self.given.items())), completed(self.numbers))
+
+    @cached_property
+    def linear(self) -> Linear:
+        """The matrices, forces and stops, with the phase resolved."""
+        return self.family.linear
+
+    @property
+    def gap_is_x1(self) -> bool:
+        """Whether the contact is that of mass 1 with a wall."""
+        along = self.linear.normal
+        return bool(along[0] == 1 and not along[1:].any())
+
+    @property
+    def phase(self) -> float:
+        """tau in radians, `grazing` resolved."""
+        return float(self.linear.tau)
+
+    @property
+    def period(self) -> float:
+        """The forcing period T = 2 pi/omega."""
+        return 2 * math.pi / self.omega
+
+    @property
+    def divergence(self) -> float:
+        """-tr(M^-1 C): the sum of the Lyapunov exponents of a non-impacting orbit."""
+        q = self.linear
+        return -float(np.trace(np.linalg.solve(q.M, q.C)))
+
+    def parameters(self) -> dict[str, float]:
+        """The numbers by name, `tau` resolved, and those that follow others."""
+        known = {name: value for name, value in self.numbers.items() if value is not None}
+        return self.following(self.numbers) | known | {"tau": self.phase}
+
+    def following(self, numbers: Mapping[str, Any]) -> dict[str, Any]:
+        """Those of its numbers that are left out and follow others; numbers : all by name, also arrays."""
+        own = [one for one in self.model.numbers if one.follows and one not in STOP_NUMBERS]
+        return followers(numbers) | {one.name: numbers[one.follows] for one in own if numbers[one.name] is None}
+
+    def replace(self, **changes: Any) -> Oscillator:
+        """A copy with other numbers. Raises ParameterError, also for a name that is not one of them."""
+        given = dict(self.given)
+        for name, value in changes.items():
+            if name in given:
+                given[name] = value
+            elif name in self.numbers:
+                lists = next(
+                    one.name
+                    for one in self.model.numbers
+                    if one.each and name[len(one.name) :].isdecimal() and name.startswith(one.name)
+                )
+                entries = list(given[lists])
+                entries[int(name[len(lists) :]) - 1] = value
+                given[lists] = entries
+            else:
+                known = [one.name for one in (*self.model.numbers, *self.model.options)]
+                raise ParameterError(name, value, f"one of {', '.join(known)}")
+        return _made(self.model, given)
 
 
-@dataclass(frozen=True)
-class System(AnyOscillator):
+def _made(model: Model, given: Mapping[str, Any]) -> Oscillator:
+    made = object.__new__(System if model is MODEL else Oscillator)
+    made._set(model, given)
+    return made
+
+
+def _again(name: str, given: Mapping[str, Any]) -> Oscillator:
+    return _made(MODELS[name], given)
+
+
+def _build(name: str, given: tuple[tuple[str, Any], ...], /, **numbers) -> Linear:
+    return linear_of(MODELS[name], dict(given) | numbers)
+
+
+POSITIONAL = inspect.Parameter.POSITIONAL_OR_KEYWORD
+
+
+def _signature(*declared: Parameter | Option, kind=POSITIONAL) -> inspect.Signature:
+    """Of a function with these arguments; those after one that may be left out may be so, too."""
+    parameters: list[inspect.Parameter] = []
+    for one in declared:
+        optional = one.optional or one.default is not None
+        after = kind is POSITIONAL and parameters and parameters[-1].default is not inspect.Parameter.empty
+        default = one.default if optional or after else inspect.Parameter.empty
+        words = {PHASE.name: float | Literal["grazing"], UNITS.name: Units | None}
+        words |= {option.name: Literal[option.words] for option in (WHICH_STOPS, *OF_STOPS)}
+        known = words.get(one.name, float | None if default is None else float)
+        parameters.append(inspect.Parameter(one.name, kind, default=default, annotation=known))
+    return inspect.Signature(parameters)
+
+
+def _arguments(signature: inspect.Signature, *values: Any, **given: Any) -> dict[str, Any]:
+    """The arguments by name. TypeError where they are not those of the signature."""
+    for name in given:
+        if name not in signature.parameters and (why := why_not_computed(name)):
+            raise ParameterError(name, given[name], f"left out; {why}")
+    bound = signature.bind(*values, **given)
+    bound.apply_defaults()
+    return bound.arguments
+
+
+class System(Oscillator):
     """The impact oscillator (3), (4). Raises ParameterError for a parameter outside its range.
 
     Examples
@@ -61,100 +278,20 @@ class System(AnyOscillator):
     (9.97331, -0.16)
     """
 
-    mu_m: float
-    mu_k: float
-    zeta: float
-    f2: float
-    omega: float
-    R: float | None = None
-    b: float | None = None  # it must be given
-    tau: float | Literal["grazing"] = "grazing"
-    stops: Stops = "both"
-    offset: float = 0.0
-    R_left: float | None = None
-    mu_c: float | None = None
-    k_stop: float | None = None
-    c_stop: float | None = None
-    preload: float | None = None
-    k_stop_left: float | None = None
-    c_stop_left: float | None = None
-    preload_left: float | None = None
-    release: Release = "displacement"
-    units: Units | None = None
-    model: ClassVar[Model] = MODEL
+    __signature__ = _signature(*PAPER, WHICH_STOPS, *PARAMETERS[len(PAPER) :], *OF_STOPS, UNITS)
 
-    def __post_init__(self):
-        _check_word("stops", self.stops, STOPS)
-        if self.units is not None:
-            if (units := units_from(self.units)) is None:
-                raise ParameterError("units", self.units, UNITS_ALLOWED)
-            object.__setattr__(self, "units", units)
-        for one in PARAMETERS:
-            value = getattr(self, one.name)
-            left_out = value is None and one.optional
-            if not (isinstance(value, str) and value in one.words) and not left_out:
-                object.__setattr__(self, one.name, checked_number(one, value, self.stops))
-        for one in OF_STOPS:
-            _check_word(one.name, getattr(self, one.name), one.words)
-        check_stops(vars(self))
-
-    @property
-    def family(self) -> Family:
-        """The same oscillator by its numbers, with their derivatives."""
-        return Family(MODEL.build, completed(self.numbers) | {"stops": self.stops, "release": self.release})
-
-    @property
-    def described(self) -> dict[str, Parameter]:
-        """The numbers of the system by name."""
-        return {one.name: one for one in PARAMETERS}
-
-    @property
-    def numbers(self) -> dict[str, Any]:
-        """Their values; `tau` may be a word, R_left and mu_c None."""
-        return {one.name: getattr(self, one.name) for one in PARAMETERS}
-
-    @property
-    def options(self) -> dict[str, Any]:
-        """What is not a number: which stops there are, and the units."""
-        return {"stops": self.stops, "release": self.release, "units": self.units}
-
-    masses = 2
-    gap_is_x1 = True
+    def __init__(self, *numbers: float, **given: Any) -> None:
+        self._set(MODEL, _arguments(System.__signature__, *numbers, **given))
 
     def __repr__(self) -> str:
         """The call that makes it, without the numbers of compliant stops where there is none."""
         left_out = {one.name: None for one in OTHER_STOPS} | {one.name: one.default for one in OF_STOPS}
-        given = {one.name: getattr(self, one.name) for one in fields(self)}
+        given = {name: self.given[name] for name in System.__signature__.parameters}
         shown = (f"{name}={value!r}" for name, value in given.items() if value != left_out.get(name, ...))
         return f"System({', '.join(shown)})"
 
     @classmethod
-    def physical(
-        cls,
-        *,
-        M1: float,
-        M2: float,
-        K1: float,
-        K2: float,
-        C1: float,
-        C2: float,
-        P1: float,
-        P2: float,
-        Omega: float,
-        B: float,
-        R: float | None = None,
-        B0: float = 0.0,
-        R_left: float | None = None,
-        k_stop: float | None = None,
-        c_stop: float | None = None,
-        preload: float | None = None,
-        k_stop_left: float | None = None,
-        c_stop_left: float | None = None,
-        preload_left: float | None = None,
-        release: Release = "displacement",
-        tau: float | Literal["grazing"] = "grazing",
-        stops: Stops = "both",
-    ) -> "System":
+    def physical(cls, **given: Any) -> System:
         """The system with these physical quantities in SI units: kg, m, s, N (section 2 of the paper). Raises
         `ParameterError`.
 
@@ -171,64 +308,20 @@ class System(AnyOscillator):
         >>> round(system.omega, 6), round(system.b, 6), round(system.zeta, 6)
         (0.63, 4.0, 0.05)
         """
-        _check_word("stops", stops, STOPS)
-        physical = {one.name: one for one in PHYSICAL}
-        given = dict(M1=M1, M2=M2, K1=K1, K2=K2, C1=C1, C2=C2, P1=P1, P2=P2, Omega=Omega, B=B, B0=B0)
-        for name, value in given.items():
-            allowed, number = range_of(physical[name], stops), number_of(value)
-            if number is None or not (math.isfinite(number) and allowed.holds(number)):
-                raise ParameterError(name, value, allowed.text.replace("a number", "a finite number"))
-            given[name] = number
-        M1, M2, K1, K2, C1, C2, P1, P2, Omega, B, B0 = given.values()
-        if P1 + P2 == 0:
-            raise ParameterError("P1", P1, "such that P1 + P2 > 0: lengths are measured in (P1 + P2)/K1")
-        frequency = math.sqrt(K1) / math.sqrt(M1)  # no product of two given numbers: it could leave the range
-        numbers = {
-            "mu_m": ("M2", M2 / M1),
-            "mu_k": ("K2", K2 / K1),
-            "zeta": ("C1", C1 / (2 * math.sqrt(K1) * math.sqrt(M1))),
-            "f2": ("P2", P2 / (P1 + P2)),
-            "omega": ("Omega", Omega / frequency),
-            "b": ("B", B / (P1 + P2) * K1),
-            "offset": ("B0", B0 / (P1 + P2) * K1),
-        }
-        for name, (key, value) in numbers.items():
-            if not math.isfinite(value) or (value == 0) != (given[key] == 0):
-                raise ParameterError(key, given[key], f"such that {name} = {value!r} is in the range of the floats")
-        stop = dict(k_stop=k_stop, c_stop=c_stop, preload=preload)
-        stop |= dict(k_stop_left=k_stop_left, c_stop_left=c_stop_left, preload_left=preload_left)
-        sizes = 2 * [K1, frequency * M1, P1 + P2]
-        for (name, value), size in zip(stop.items(), sizes, strict=True):
-            stop[name] = value if number_of(value) is None else number_of(value) / size
-        units = units_from((M1, (P1 + P2) / K1, 1 / frequency))  # none where they leave the range
-        made = {name: value for name, (_, value) in numbers.items()}
-        system = cls(**made, **stop, R=R, R_left=R_left, tau=tau, stops=stops, release=release, units=units)
-        one, other = Fraction(C1) * Fraction(K2), Fraction(C2) * Fraction(K1)
-        if abs(one - other) <= max(one, other) / 10**9:  # proportional, but for the rounding of the input
-            return system
-        if C1 == 0:
-            raise ParameterError("C1", C1, "> 0 where C2 > 0: the damping ratio of the second damper is C2/C1")
-        return system.replace(mu_c=C2 / C1)
+        given = _arguments(_PHYSICAL, **given)
+        stops = checked_option(WHICH_STOPS, given["stops"])
+        same = {name: given[name] for name in given if name in System.__signature__.parameters}
+        return cls(**same | in_numbers(given, stops))
 
-    def replace(self, **changes: Any) -> "System":
-        """A copy with other parameters. Raises ParameterError, also for a name that is not one of them.
-
-        Examples
-        --------
-        >>> import vibro_sweep as vs
-        >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
-        >>> system.replace(b=4.5).b
-        4.5
-        """
-        for name in changes:
-            if name not in (known := [one.name for one in fields(self)]):
-                raise ParameterError(name, changes[name], f"one of {', '.join(known)}")
-        return dataclass_replace(self, **changes)
+    def in_closed_form(self, swept: Iterable[str] = ()) -> bool:
+        """Whether the paper's formulas hold: none of its numbers that they do not know is given, or swept."""
+        others = [one for one in PARAMETERS if one.name not in KNOWN]
+        return not any(one.name in swept or self.given[one.name] != one.default for one in others)
 
     @property
     def phase(self) -> float:
         """tau in radians, `grazing` resolved."""
-        return float(with_phase(vars(self))["tau"])
+        return float(with_phase(self.numbers)["tau"]) if self.in_closed_form() else super().phase
 
     @property
     def modes(self) -> Modes:
@@ -243,24 +336,20 @@ class System(AnyOscillator):
         """
         return self.zeta * self.modes.omega_squared
 
-    @property
-    def divergence(self) -> float:
-        """-tr(M^-1 C): the sum of the Lyapunov exponents of a non-impacting orbit."""
-        return -2 * self.zeta * (1 + (1 + (self.mu_k if self.mu_c is None else self.mu_c)) / self.mu_m)
-
     def parameters(self) -> dict[str, float]:
         """The numbers by name, `tau` resolved, and R_left and mu_c where they follow."""
-        return resolved(self.numbers)
+        return resolved(self.numbers) if self.in_closed_form() else super().parameters()
 
 
-def _check_word(name: str, value: object, words: tuple[str, ...]) -> None:
-    if not (isinstance(value, str) and value in words):
-        raise ParameterError(name, value, f"{', '.join(words[:-1])} or {words[-1]}")
+_PHYSICAL = _signature(*PHYSICAL, PHASE, WHICH_STOPS, *OF_STOPS, kind=inspect.Parameter.KEYWORD_ONLY)
+vars(System)["physical"].__func__.__signature__ = _PHYSICAL.replace(
+    parameters=[inspect.Parameter("cls", POSITIONAL), *_PHYSICAL.parameters.values()]
+)
 
 
 def checked_system(system: object) -> None:
     """Raise TypeError unless it is a System or an Oscillator."""
-    check_type("system", system, AnyOscillator, "a System or an Oscillator")
+    check_type("system", system, Oscillator, "a System or an Oscillator")
 
 
 # what `help` shows of the parameters; absent where docstrings are (python -OO)

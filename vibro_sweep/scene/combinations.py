@@ -4,8 +4,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.contact_laws.compliant import LAW as COMPLIANT
+from vibro_sweep.model.oscillator import Oscillator
 from vibro_sweep.model.stops import DAMPER_ALONE, why_rigid
 from vibro_sweep.tables.exponents import LEAST_RECORD
 from vibro_sweep.tables.observables import WORDS
@@ -14,7 +14,7 @@ from .fields import Form
 from .problems import problem
 
 
-def combination_problems(form: Form, data: dict, system: AnyOscillator | None) -> list[str]:
+def combination_problems(form: Form, data: dict, system: Oscillator | None) -> list[str]:
     """The problems of a scene of the right form; data: as it was read; system: None where it is wrong itself."""
     section, stops = form.section, getattr(form.system, "stops", "both")
     problems = _map_problems(form) + (_contact_problems(form, system) if system is not None else [])
@@ -48,7 +48,7 @@ def _settle_problems(orbit: Form) -> list[str]:
     return problems
 
 
-def stop_problems(sweep: Mapping[str, np.ndarray], system: AnyOscillator) -> list[str]:
+def stop_problems(sweep: Mapping[str, np.ndarray], system: Oscillator) -> list[str]:
     """The problems of swept stiffnesses of stops: 0 is that of a damper alone."""
     problems, numbers = [], system.numbers
     for stiffness, *others in COMPLIANT.names.values():
@@ -60,7 +60,7 @@ def stop_problems(sweep: Mapping[str, np.ndarray], system: AnyOscillator) -> lis
     return problems
 
 
-def _contact_problems(form: Form, system: AnyOscillator) -> list[str]:
+def _contact_problems(form: Form, system: Oscillator) -> list[str]:
     """What compliant stops have no part in, and rigid ones."""
     q = system.linear
     if not q.compliant:

@@ -9,7 +9,7 @@ from pydantic import ValidationError
 from vibro_sweep.checks.arguments import checked_count
 from vibro_sweep.checks.refusals import ParameterError, cut, not_allowed
 from vibro_sweep.model import wording
-from vibro_sweep.model.any_oscillator import AnyOscillator
+from vibro_sweep.model.oscillator import Oscillator
 
 from .continue_form import ORIGINS
 from .fields import Form
@@ -51,7 +51,7 @@ class Continuation:
 
     name: str
     text: str
-    system: AnyOscillator
+    system: Oscillator
     origin: str
     begin: Any
     periods: int
@@ -205,7 +205,7 @@ def _ranges(parameter: Form, keys: list[str]) -> tuple[dict[str, tuple[float, fl
     return {} if wrong else ranges, wrong
 
 
-def _outside(system: AnyOscillator, key: str, value: float) -> list[str]:
+def _outside(system: Oscillator, key: str, value: float) -> list[str]:
     try:
         system.replace(**{key: value})
     except ParameterError as error:

@@ -13,10 +13,10 @@ from pydantic import ValidationError
 from vibro_sweep.checks.real import array_of
 from vibro_sweep.checks.refusals import cut
 from vibro_sweep.model import wording
-from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.built import BUILD, Built
 from vibro_sweep.model.grid import digest, grid
 from vibro_sweep.model.models import DEFAULT, MODELS
+from vibro_sweep.model.oscillator import Oscillator
 from vibro_sweep.tables.coordinates import START, start
 
 from .combinations import combination_problems, stop_problems
@@ -96,7 +96,7 @@ class Scene:
 
     name: str
     given: str | None  # the YAML text that it was read from
-    system: AnyOscillator
+    system: Oscillator
     dynamics: str
     order: int
     expand_at: float | None

@@ -4,8 +4,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.built import Built
+from vibro_sweep.model.oscillator import Oscillator
 from vibro_sweep.tables.coordinates import START, state
 
 from .fields import Form
@@ -53,7 +53,7 @@ def start_of(form: Form, masses: int) -> Start:
     return Start("state", state=values, rest=rest)
 
 
-def start_problems(form: Form, sweep, system: AnyOscillator | None, masses: int) -> list[str]:
+def start_problems(form: Form, sweep, system: Oscillator | None, masses: int) -> list[str]:
     """The problems of the start, given or swept, in this system (None: it is wrong itself)."""
     if isinstance(form.start, FollowStart) and form.sweep is None:
         return [problem("start.follow", form.start.follow, "there is no sweep to follow")]
@@ -79,7 +79,7 @@ def start_problems(form: Form, sweep, system: AnyOscillator | None, masses: int)
     return _behind(form, sweep, system, names, swept) if given else []
 
 
-def _behind(form: Form, sweep, system: AnyOscillator, names, swept) -> list[str]:
+def _behind(form: Form, sweep, system: Oscillator, names, swept) -> list[str]:
     """States with the gap behind a stop, at the corners of the sweep: both are linear in what is swept."""
     along = system.linear.normal
     used = [name for i, name in enumerate(names[::2]) if along[i]]
@@ -102,7 +102,7 @@ def _behind(form: Form, sweep, system: AnyOscillator, names, swept) -> list[str]
     return [problem(path, worst, f"is behind a stop; {what}{origin}")]
 
 
-def stops_of(system: AnyOscillator, sweep) -> tuple[float, float]:
+def stops_of(system: Oscillator, sweep) -> tuple[float, float]:
     """The narrowest positions of the stops in a sweep, infinite where there is none."""
     if isinstance(system, Built):
         return system.linear.low, system.linear.high

@@ -3,12 +3,10 @@
 import numpy as np
 
 from vibro_sweep.checks.refusals import ParameterError, cut
-from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.checked_numbers import check_value
-from vibro_sweep.model.general import Oscillator
 from vibro_sweep.model.models import DEFAULT, MODELS
 from vibro_sweep.model.models.declaration import OF_STOPS, entries
-from vibro_sweep.model.oscillator import System
+from vibro_sweep.model.oscillator import Oscillator, System
 from vibro_sweep.tables.coordinates import START
 from vibro_sweep.tables.quantity import Parameter
 
@@ -57,7 +55,7 @@ def _number_problems(path: str, number: Parameter, value, stops: str) -> list[st
     return []
 
 
-def system_of(form: Form, sweep, kind: str, masses: int) -> tuple[AnyOscillator | None, list[str]]:
+def system_of(form: Form, sweep, kind: str, masses: int) -> tuple[Oscillator | None, list[str]]:
     """The base system with the first swept values in it, or None and what is wrong."""
     model = MODELS[kind]
     numbers = model.flat(masses)

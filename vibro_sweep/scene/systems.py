@@ -8,7 +8,7 @@ from pydantic.config import JsonDict
 
 from vibro_sweep.model.models import DEFAULT, MODELS
 from vibro_sweep.model.models.declaration import OF_STOPS, WHICH_STOPS, Option
-from vibro_sweep.model.oscillator import PHYSICAL
+from vibro_sweep.model.physical import PHYSICAL
 from vibro_sweep.tables.parameters import PHASE
 from vibro_sweep.tables.quantity import POSITIVE, Parameter
 

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from vibro_sweep.checks.refusals import shown
-from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.built import Built
 from vibro_sweep.model.models import DEFAULT
+from vibro_sweep.model.oscillator import Oscillator
 from vibro_sweep.tables.coordinates import START, start, state
 from vibro_sweep.tables.observables import WORDS
 
@@ -98,7 +98,7 @@ def yaml_of(data: Mapping[str, Any]) -> str:
 
 
 def _as_data(key: str, value):
-    if isinstance(value, AnyOscillator):
+    if isinstance(value, Oscillator):
         return _system(value, ())
     if isinstance(value, Start):
         return _start(value, (), len(value.state) // 2)
@@ -130,7 +130,7 @@ def axis_data(axis: object) -> object:
     return data
 
 
-def _system(system: AnyOscillator, swept) -> dict[str, Any]:
+def _system(system: Oscillator, swept) -> dict[str, Any]:
     """Numbers and options that are not what they are if they are left out; those of lists that are swept stay."""
     if isinstance(system, Built):
         return dict(system.options)

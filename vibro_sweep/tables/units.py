@@ -19,7 +19,7 @@ _PLAIN = re.compile(r"[\w.+ -]{1,60}")  # of what others write, what can stand i
 
 
 class Units(NamedTuple):
-    """The units of mass, length and time."""
+    """The units of mass, length and time: what 1 is in kg, m and s."""
 
     kg: float
     m: float

@@ -1,6 +1,6 @@
 """What functions take and return, for annotations and `isinstance`: `from vibro_sweep.types import Branch`.
 
-`System` and `Oscillator` are in `vibro_sweep` itself; both are an `AnyOscillator`.
+Oscillators are in `vibro_sweep` itself: each is an `Oscillator`, of which `System` is one.
 """
 
 from vibro_sweep.analysis.branches.branch import Branch
@@ -18,16 +18,15 @@ from vibro_sweep.analysis.windows.window import Window, Windows
 from vibro_sweep.driver.cost import Estimate
 from vibro_sweep.driver.sweep import RunReport
 from vibro_sweep.live.served_page import LivePage
-from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.grazing import Grazing
 from vibro_sweep.model.linear import Family, Linear
 from vibro_sweep.model.modes import Modes
 from vibro_sweep.model.window_families import Family as WindowFamily
 from vibro_sweep.scene import Continuation, Scene, Section, Start, Trajectory
 from vibro_sweep.tables.picture_kinds import Plottable
+from vibro_sweep.tables.units import Units
 
 __all__ = [
-    "AnyOscillator",
     "BifurcationCurve",
     "Born",
     "Branch",
@@ -52,6 +51,7 @@ __all__ = [
     "Start",
     "Status",
     "Trajectory",
+    "Units",
     "Unvisited",
     "Window",
     "WindowFamily",

@@ -3,7 +3,6 @@
 import json
 import math
 import zlib
-from dataclasses import fields
 from pathlib import Path
 
 import numpy as np
@@ -16,9 +15,9 @@ from vibro_sweep.checks.file_names import ExistingFileError, FileError, checked_
 from vibro_sweep.checks.real import array_of, number_of
 from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.engine.impulses.free_modes import ResonanceError, TooStiffError, without_orbit
-from vibro_sweep.model.general import Oscillator
 from vibro_sweep.model.linear import family_of
-from vibro_sweep.model.oscillator import System
+from vibro_sweep.model.models import DEFAULT
+from vibro_sweep.model.oscillator import Oscillator
 
 FORMAT = "vibro_sweep periodic orbit 2"
 WITHOUT_CHECKSUM = "vibro_sweep periodic orbit 1"
@@ -32,15 +31,11 @@ def save_orbit(orbit: PeriodicOrbit, path) -> Path:
     if s is None:
         raise ArgumentError(f"this orbit has no motion to save: its status is {orbit.status!r}")
     system = orbit.system
-    if isinstance(system, System):
-        numbers = {field.name: getattr(system, field.name) for field in fields(system)}
-    elif isinstance(system, Oscillator):
-        numbers = {"type": system.model.name, **system.given}
-    else:
+    if not isinstance(system, Oscillator):
         raise ArgumentError("an orbit of a Family cannot be saved: its function is not a text")
     record = {
         "format": FORMAT,
-        "system": numbers,
+        "system": {"type": system.model.name, **system.given},
         "sigma": s.sigma,
         "halves": s.half_periods,
         "sides": [int(side) for side in s.sides],
@@ -78,7 +73,7 @@ def load_orbit(path: str | Path) -> PeriodicOrbit:
     try:
         check_type("system", record["system"], dict, "an object of numbers")
         numbers = dict(record["system"])
-        system = Oscillator.named(numbers.pop("type", System.model.name), **numbers)
+        system = Oscillator.named(numbers.pop("type", DEFAULT), **numbers)
         sigma, half_periods = (
             checked_count("sigma", record["sigma"], -1, 1),
             checked_count("halves", record["halves"], 1),

@@ -8,8 +8,7 @@ from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.checks.real import number_of
 from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.engine.period_map import PeriodMap
-from vibro_sweep.model.any_oscillator import AnyOscillator
-from vibro_sweep.model.oscillator import checked_system
+from vibro_sweep.model.oscillator import Oscillator, checked_system
 from vibro_sweep.tables.coordinates import checked_state
 
 ORDERS = (1, 2)
@@ -27,7 +26,7 @@ class DiscontinuityMap:
     ((4,), (4, 4))
     """
 
-    def __init__(self, system: AnyOscillator, order: int = 1, expand_at: float | None = None):
+    def __init__(self, system: Oscillator, order: int = 1, expand_at: float | None = None):
         checked_system(system)
         if number_of(order) not in ORDERS:
             raise ArgumentError(not_allowed("order", order, " or ".join(map(str, ORDERS))))
@@ -51,7 +50,7 @@ class DiscontinuityMap:
 
 
 @names_its_arguments
-def discontinuity_map(system: AnyOscillator, order: int = 1, expand_at: float | None = None) -> DiscontinuityMap:
+def discontinuity_map(system: Oscillator, order: int = 1, expand_at: float | None = None) -> DiscontinuityMap:
     """The discontinuity mapping of `system` at its clearance.
 
     system : a System, or an Oscillator; with equal stops about 0 (or one of them) and no constant force

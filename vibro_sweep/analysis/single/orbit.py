@@ -21,8 +21,7 @@ from vibro_sweep.engine.halting import interruptible
 from vibro_sweep.engine.motion import orbits
 from vibro_sweep.engine.one_system import Engine, is_paper, plan_of
 from vibro_sweep.engine.records import new_results, starts_at
-from vibro_sweep.model.any_oscillator import AnyOscillator
-from vibro_sweep.model.oscillator import checked_system
+from vibro_sweep.model.oscillator import Oscillator, checked_system
 from vibro_sweep.model.own_time import rate_of, with_velocities
 from vibro_sweep.tables.coordinates import checked_state
 from vibro_sweep.tables.outcomes import OK, status_of
@@ -95,7 +94,7 @@ class Orbit(Result):
     (1, 1.633337)
     """
 
-    system: AnyOscillator
+    system: Oscillator
     start_time: float
     impacts: np.ndarray
     sticking: np.ndarray
@@ -181,7 +180,7 @@ class Orbit(Result):
 
 
 @names_its_arguments
-def simulate(system: AnyOscillator, state: ArrayLike, periods: int, start_time: float = 0.0) -> Orbit:
+def simulate(system: Oscillator, state: ArrayLike, periods: int, start_time: float = 0.0) -> Orbit:
     """Simulate one orbit of the impact oscillator (3), (4).
 
     Parameters
@@ -239,7 +238,7 @@ def simulate(system: AnyOscillator, state: ArrayLike, periods: int, start_time: 
     )
 
 
-def _rate_of(system: AnyOscillator) -> float:
+def _rate_of(system: Oscillator) -> float:
     """Of the unit of time in which its orbits are computed."""
     return 1.0 if is_paper(system) else rate_of(system.omega)
 
@@ -275,7 +274,7 @@ def _carried(engine: Engine, section: np.ndarray) -> _Carried:
 
 
 @names_its_arguments
-def lyapunov(system: AnyOscillator, state: ArrayLike, transient: int = 1000, record: int = 10_000) -> Exponents:
+def lyapunov(system: Oscillator, state: ArrayLike, transient: int = 1000, record: int = 10_000) -> Exponents:
     """Lyapunov spectrum (2N,) of the orbit from `state` at t = 0: descending, natural logarithm, per unit time.
 
     An array that has `.error`, the standard errors (2N,), and `.residual`, the sum minus its exact value, too.
