@@ -96,7 +96,7 @@ def compute(computation: Computation, scene) -> bool:
     if of_sweep and not computation.quiet:
         from .summaries import summary
 
-        say(summary(computation.output, report))
+        say(summary(computation.output, report, scene.settle))
     elif not computation.quiet:
         say_tables(computation.output)
     return of_sweep and bool(report.bad)

@@ -2,6 +2,7 @@
 
 import contextlib
 import json
+import math
 from collections import Counter
 from pathlib import Path
 from typing import NamedTuple
@@ -130,7 +131,9 @@ def _to_go(sweep: Sweep) -> str:
         return ""
     half, longest = (f"{float(f'{periods:.2g}'):,.0f}" for periods in (np.median(needed), needed.max()))
     most = "" if half == longest else f", half of them within {half}"
-    return f"; {len(needed):,} arrive at a periodic orbit within about {longest} periods more (`settle`){most}"
+    enough = 10 ** math.ceil(math.log10(2 * needed.max()))  # predictions are too short while the motion still changes
+    within = f"; {len(needed):,} arrive at a periodic orbit within about {longest} periods more{most}"
+    return f"{within}: with `orbit: settle: {enough}` each goes on for as many as it needs"
 
 
 def _turning(sweep: Sweep) -> list[str]:

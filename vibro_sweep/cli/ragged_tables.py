@@ -23,15 +23,16 @@ def windows_table(arrays: Mapping, parameters: list[str]) -> list[str]:
     first = np.append(0, np.cumsum(arrays["branch_row_size"]))
     lower, upper = np.asarray(arrays["window_lower"]), np.asarray(arrays["window_upper"])
     words = [_short(word) for word in _words(arrays)]
-    names = ("from", "ends with", "to", "ends with", "period", "impacts", "symmetric", "orbits", "other attractor")
+    ends = ("ends with", "point")
+    names = ("from", *ends, "to", *ends, "period", "impacts", "symmetric", "orbits", "other attractor")
     rows = [(*held, *names)]
     for w, branch in enumerate(np.asarray(arrays["window_branch"]).tolist()):
-        ends = [ending(arrays, int(end[w])) for end in (lower, upper)]
-        numbers = [_number(arrays, int(end[w])) for end in (lower, upper)]
+        special = int(lower[w]), int(upper[w])
+        both = [word for s in special for word in (_number(arrays, s), ending(arrays, s), str(s))]
         kind = [str(arrays["window_period"][w]), words[branch], "yes" if arrays["window_symmetric"][w] else "no"]
         orbits = [str(arrays[name][w]) for name in ("window_orbits", "window_other_attractor")]
         row = [f"{arrays[name][first[branch]]:.10g}" for name in held]
-        rows.append((*row, numbers[0], ends[0], numbers[1], ends[1], *kind, *orbits))
+        rows.append((*row, *both, *kind, *orbits))
     lines = [f"windows in {parameter}: {len(rows) - 1}", *_aligned(rows)]
     named = Counter(TYPES[code].name for code in np.asarray(arrays["special_type"])[np.append(lower, upper)].tolist())
     lines.append("ends         " + _counted(named))
@@ -40,7 +41,7 @@ def windows_table(arrays: Mapping, parameters: list[str]) -> list[str]:
     found = {REASONS[code].name: int(count) for code, count in zip(codes.tolist(), numbers.tolist(), strict=True)}
     covered = found.pop("in_a_window", 0)
     lines.append(f"orbits       {covered:,} of {reasons.size:,} in windows" + (f"; {_counted(found)}" if found else ""))
-    return [*lines, *_families(arrays), *_unvisited(arrays, parameter)]
+    return [*lines, *_families(arrays), *_unvisited(arrays, parameters)]
 
 
 def _families(arrays: Mapping) -> list[str]:
@@ -57,18 +58,21 @@ def _families(arrays: Mapping) -> list[str]:
     return lines
 
 
-def _unvisited(arrays: Mapping, parameter: str) -> list[str]:
+def _unvisited(arrays: Mapping, parameters: list[str]) -> list[str]:
     """A line for each stretch of a window on which the sweep shows other attractors only, with a start."""
+    parameter, *held = parameters
     words, branches = _words(arrays), np.asarray(arrays["window_branch"])
+    first = np.append(0, np.cumsum(arrays["branch_row_size"]))
     names = [
         name for name in arrays if name.startswith("unvisited_") and name.removeprefix("unvisited_") not in UNVISITED
     ]
-    rows = [("from", "to", "period", "impacts", "values", parameter, "start")]
+    rows = [(*held, "from", "to", "period", "impacts", "values", parameter, "start")]
     for u, w in enumerate(np.asarray(arrays["unvisited_window"]).tolist()):
         lo, hi, at = (f"{arrays[f'unvisited_{name}'][u]:.10g}" for name in ("lo", "hi", "at"))
         start = ", ".join(f"{name.removeprefix('unvisited_')}: {float(arrays[name][u])!r}" for name in names)
         kind = str(arrays["window_period"][w]), _short(words[branches[w]])
-        rows.append((lo, hi, *kind, str(arrays["unvisited_values"][u]), at, start))
+        row = [f"{arrays[name][first[branches[w]]]:.10g}" for name in held]
+        rows.append((*row, lo, hi, *kind, str(arrays["unvisited_values"][u]), at, start))
     count = len(rows) - 1
     told = "1 stretch of a window" if count == 1 else f"{count} stretches of windows"
     return [f"coexistence  {told} on which the sweep shows other attractors only", *_aligned(rows)] if count else []

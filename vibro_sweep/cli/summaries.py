@@ -134,15 +134,20 @@ def _default(one: Parameter | Option) -> str:
     return f" [{str(one.default).lower() if isinstance(one.default, bool) else one.default}]"
 
 
-def summary(output: Path, report: "RunReport") -> str:
-    """The summary that `run` prints at its end."""
+TO_SETTLE = "`orbit: settle`, or a longer record, may tell"
+
+
+def summary(output: Path, report: "RunReport", settle: int | None = None) -> str:
+    """The summary that `run` prints at its end. settle : periods that the scene allows for that, if any"""
     from vibro_sweep.driver.cost import duration
 
     unsettled = report.statuses.get("not_settled", 0)
     bad = {name: count for name, count in report.statuses.items() if name not in ("ok", "not_settled") and count}
     named = ", ".join(f"{name} {count}" for name, count in bad.items())
     state = f"{report.bad} with a bad status ({named})" if report.bad else "none failed" if unsettled else "all ok"
-    state += f"; {unsettled:,} not settled yet: `settle`, or a longer record, may tell" if unsettled else ""
+    if unsettled:
+        longer = f"`info` says how far from it; {settle:,} periods of `settle` were too few" if settle else TO_SETTLE
+        state += f"; {unsettled:,} not settled yet: {longer}"
     if not report.computed:
         return f"{output} is complete already, from the same scene: {points(report.points)}, {state}"
     advice = [f"\n{one.name}: {one.advice}" for one in STATUSES if one.name in bad]

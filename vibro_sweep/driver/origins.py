@@ -166,6 +166,9 @@ def _from_branches(scene: Continuation, key: str) -> list[PeriodicOrbit]:
     special, (parameter, *_) = _special(scene)
     if isinstance(special, CurvePoint):
         return [special.orbit]
+    if special.type not in WAYS and key == parameter:
+        named = f"{scene.special} is a {special.type!r} in {scene.begin}, at which no other branch begins"
+        raise SourceError(f"continue.from.special: {named}; one begins at {', '.join(WAYS)}")
     found = switch(special) if special.type in WAYS else []
     return found if key == parameter else [special.orbit, *found]
 

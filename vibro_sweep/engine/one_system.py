@@ -22,7 +22,7 @@ from vibro_sweep.model.linear import stacked
 from vibro_sweep.model.metric import ROUNDING
 from vibro_sweep.model.models.two_mass import NAMES
 from vibro_sweep.model.modes import modes
-from vibro_sweep.model.oscillator import System
+from vibro_sweep.model.oscillator import System, in_closed_form
 from vibro_sweep.model.own_time import in_own_time, with_velocities
 from vibro_sweep.model.stops import has_compliant
 from vibro_sweep.tables import outcomes as status
@@ -105,7 +105,7 @@ def is_paper(system, axes: dict[str, np.ndarray] | None = None) -> bool:
     axes : values for some of its numbers, for all of which it must be
     """
     axes = axes or {}
-    if not isinstance(system, System) or not system.in_closed_form(axes):
+    if not in_closed_form(system, axes):
         return False
     if "mu_c" in axes or system.mu_c not in (None, system.mu_k):
         return False

@@ -7,7 +7,7 @@ import numpy as np
 
 from vibro_sweep.checks.arguments import names_its_arguments
 from vibro_sweep.model.linear import Linear, amplitudes, gap_response, grazing_phase, static_state
-from vibro_sweep.model.oscillator import Oscillator, System, checked_system
+from vibro_sweep.model.oscillator import Oscillator, System, checked_system, in_closed_form
 from vibro_sweep.model.paper_motion import free_motion, grazing_clearance, steady_response
 
 ROUNDING = 1e-13  # of a static state, relative to it; of 1 - multiplier
@@ -58,7 +58,7 @@ def grazing(system: Oscillator) -> Grazing:
     (6.705716740973, 2.229306509033, True)
     """
     checked_system(system)
-    paper = isinstance(system, System) and system.mu_c in (None, system.mu_k) and system.in_closed_form()
+    paper = in_closed_form(system) and system.mu_c in (None, system.mu_k)
     touch = _of_the_paper(system) if paper else _of_any(system)
     q = system.linear
     offset = getattr(system, "offset", 0.0)

@@ -7,7 +7,7 @@ import numpy as np
 
 from vibro_sweep.model.built import Built, sizes_of, stored_of
 from vibro_sweep.model.linear import Linear, stack_of, stacked
-from vibro_sweep.model.oscillator import Oscillator, System
+from vibro_sweep.model.oscillator import Oscillator, following, in_closed_form
 from vibro_sweep.model.paper_motion import resolved
 
 MOST_COMPARED = 4096
@@ -21,12 +21,12 @@ def grid(system: Oscillator, axes: dict[str, np.ndarray]) -> dict[str, np.ndarra
     numbers = system.numbers
     numbers.update(zip(axes, np.meshgrid(*axes.values(), indexing="ij", sparse=True), strict=True))
     shape = tuple(len(values) for values in axes.values())
-    if isinstance(system, System) and system.in_closed_form(axes):
+    if in_closed_form(system, axes):
         numbers = resolved(numbers)
     else:
         if isinstance(system, Built):
             numbers |= sizes_of(linears(system, axes))
-        numbers |= system.following(numbers)
+        numbers |= following(system.model, numbers)
         numbers = {name: value for name, value in numbers.items() if value is not None}
         if isinstance(numbers.get("tau"), str):
             numbers["tau"] = linears(system, axes).tau

@@ -198,12 +198,7 @@ class Oscillator:
     def parameters(self) -> dict[str, float]:
         """The numbers by name, `tau` resolved, and those that follow others."""
         known = {name: value for name, value in self.numbers.items() if value is not None}
-        return self.following(self.numbers) | known | {"tau": self.phase}
-
-    def following(self, numbers: Mapping[str, Any]) -> dict[str, Any]:
-        """Those of its numbers that are left out and follow others; numbers : all by name, also arrays."""
-        own = [one for one in self.model.numbers if one.follows and one not in STOP_NUMBERS]
-        return followers(numbers) | {one.name: numbers[one.follows] for one in own if numbers[one.name] is None}
+        return following(self.model, self.numbers) | known | {"tau": self.phase}
 
     def replace(self, **changes: Any) -> Oscillator:
         """A copy with other numbers. Raises ParameterError, also for a name that is not one of them."""
@@ -224,6 +219,12 @@ class Oscillator:
                 known = [one.name for one in (*self.model.numbers, *self.model.options)]
                 raise ParameterError(name, value, f"one of {', '.join(known)}")
         return _made(self.model, given)
+
+
+def following(model: Model, numbers: Mapping[str, Any]) -> dict[str, Any]:
+    """The numbers of a model that are left out and follow others; numbers : all by name, also arrays."""
+    own = [one for one in model.numbers if one.follows and one not in STOP_NUMBERS]
+    return followers(numbers) | {one.name: numbers[one.follows] for one in own if numbers[one.name] is None}
 
 
 def _made(model: Model, given: Mapping[str, Any]) -> Oscillator:
@@ -313,15 +314,10 @@ class System(Oscillator):
         same = {name: given[name] for name in given if name in System.__signature__.parameters}
         return cls(**same | in_numbers(given, stops))
 
-    def in_closed_form(self, swept: Iterable[str] = ()) -> bool:
-        """Whether the paper's formulas hold: none of its numbers that they do not know is given, or swept."""
-        others = [one for one in PARAMETERS if one.name not in KNOWN]
-        return not any(one.name in swept or self.given[one.name] != one.default for one in others)
-
     @property
     def phase(self) -> float:
         """tau in radians, `grazing` resolved."""
-        return float(with_phase(self.numbers)["tau"]) if self.in_closed_form() else super().phase
+        return float(with_phase(self.numbers)["tau"]) if in_closed_form(self) else super().phase
 
     @property
     def modes(self) -> Modes:
@@ -338,13 +334,22 @@ class System(Oscillator):
 
     def parameters(self) -> dict[str, float]:
         """The numbers by name, `tau` resolved, and R_left and mu_c where they follow."""
-        return resolved(self.numbers) if self.in_closed_form() else super().parameters()
+        return resolved(self.numbers) if in_closed_form(self) else super().parameters()
 
 
 _PHYSICAL = _signature(*PHYSICAL, PHASE, WHICH_STOPS, *OF_STOPS, kind=inspect.Parameter.KEYWORD_ONLY)
 vars(System)["physical"].__func__.__signature__ = _PHYSICAL.replace(
     parameters=[inspect.Parameter("cls", POSITIONAL), *_PHYSICAL.parameters.values()]
 )
+
+
+def in_closed_form(system: Oscillator, swept: Iterable[str] = ()) -> bool:
+    """Whether the paper's formulas hold: it is a System, and none of its numbers that they do not know is given, or
+    swept."""
+    if not isinstance(system, System):
+        return False
+    others = [one for one in PARAMETERS if one.name not in KNOWN]
+    return not any(one.name in swept or system.given[one.name] != one.default for one in others)
 
 
 def checked_system(system: object) -> None:

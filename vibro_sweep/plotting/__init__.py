@@ -182,7 +182,9 @@ def _chosen(result: Result, kind: str | None) -> list[str]:
     if not available:
         raise PlotError(f"{result.path}: nothing to show, there is no picture of {result.contents()} alone")
     if kind not in (None, "all", *available):
-        raise PlotError(f"kind {shown(kind)}: {result.path} can show {', '.join(available)} (or all)")
+        needed = (KINDS[kind].shows.__doc__ or "").rstrip(".") if kind in KINDS else ""
+        more = f"; {kind} needs {needed[:1].lower()}{needed[1:]}" if needed else ""
+        raise PlotError(f"kind {shown(kind)}: {result.path} can show {', '.join(available)} (or all){more}")
     candidates = available if kind in (None, "all") else [kind]
     at, variable = result.options.at, result.options.variable
     fitting = [name for name in candidates if not at or KINDS[name].of_orbits]

@@ -16,7 +16,7 @@ from vibro_sweep.model.grid import grid, linears
 from vibro_sweep.model.linear import Linear
 from vibro_sweep.model.models import DEFAULT
 from vibro_sweep.model.models.declaration import UNITS
-from vibro_sweep.model.oscillator import System
+from vibro_sweep.model.oscillator import in_closed_form
 from vibro_sweep.model.paper_motion import grazing_clearance
 from vibro_sweep.model.stacks import dot, modulus
 from vibro_sweep.model.steady import gap_responses, static_states, steady_amplitudes
@@ -107,7 +107,7 @@ def following(scene: Scene, box: tuple[slice, ...]) -> dict[str, np.ndarray]:
         return _of_built(linears(scene.system, axes))
     numbers = grid(scene.system, axes)
     offset = numbers.get("offset", 0.0)
-    if isinstance(scene.system, System) and scene.system.in_closed_form(axes):
+    if in_closed_form(scene.system, axes):
         size, middle = grazing_clearance(numbers), 0.0
     else:
         size, middle = _free_motion(linears(scene.system, axes))

@@ -18,6 +18,7 @@ from vibro_sweep.model.grid import digest, grid
 from vibro_sweep.model.models import DEFAULT, MODELS
 from vibro_sweep.model.oscillator import Oscillator
 from vibro_sweep.tables.coordinates import START, start
+from vibro_sweep.tables.units import NONE, unit_in
 
 from .combinations import combination_problems, stop_problems
 from .form import built_form, scene_form
@@ -204,7 +205,7 @@ class Scene:
         known |= {name: value for name, value in self.system.options.items() if value is not None}
         system = wording.numbers({name: value for name, value in known.items() if name not in self.sweep})
         kind = "" if self.system.model.name == DEFAULT else f"{self.system.model.name}: "
-        axes = [f"{key} = {v[0]:g} .. {v[-1]:g} ({len(v):,} values)" for key, v in self.sweep.items()]
+        axes = [f"{key} = {v[0]:g} .. {v[-1]:g}{self._unit(key)} ({len(v):,} values)" for key, v in self.sweep.items()]
         state = dict(zip(start(self.system.masses), self.start.state, strict=self.start.kind != "random"))
         names = ", ".join(name.removeprefix("start_") for name in state)
         starts = {
@@ -228,6 +229,11 @@ class Scene:
             samples, periods = self.trajectory.samples, self.trajectory.periods
             lines.append(f"  trajectory {samples:,} samples over {periods:,} forcing periods")
         return "\n".join(lines)
+
+    def _unit(self, key: str) -> str:
+        """The unit of a swept number, in brackets."""
+        unit = unit_in(self.system.described[key].units, self.system.units) if key in self.system.described else NONE
+        return "" if unit == NONE else f" [{unit}]"
 
     def parameters(self) -> dict[str, np.ndarray]:
         """Every number of the system by name, `tau` resolved, and swept numbers of the start (start_x1, ...).

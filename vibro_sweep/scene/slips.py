@@ -116,7 +116,8 @@ def other_form(path: str, given: object, words: Iterable[str] = ()) -> str | Non
     if path == "start":
         return _start(given)
     if path == "observe":
-        names = [given] if isinstance(given, str) else list(given) if isinstance(given, Mapping) else []
+        parts = re.split(r"[,;\s]+", given) if isinstance(given, str) else given
+        names = [*parts] if isinstance(parts, (list, Mapping)) else []
         known = [name for name in (meant(name, words) for name in names) if name]
         return f"write observe: [{', '.join(known or ['section', 'lyapunov'])}]"
     if path == "system.stops" and str(given).lower() in ("none", "no", "false", "off", "free", "[]", "0"):

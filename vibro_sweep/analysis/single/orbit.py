@@ -106,7 +106,9 @@ class Orbit(Result):
     _engine: Engine
 
     def __repr__(self) -> str:
-        what = f"{len(self.section) - 1:,} forcing periods, {len(self.impacts):,} impacts, {len(self.sticking):,} rests"
+        counts = {"impacts": self.impacts, "rests": self.sticking, "contacts": self.contacts}
+        shown = [f"{len(one):,} {name}" for name, one in counts.items() if name != "contacts" or len(one)]
+        what = ", ".join([f"{len(self.section) - 1:,} forcing periods", *shown])
         return f"<Orbit from t = {self.start_time:g}: {what}, status '{self.status}'; {self.system}>"
 
     @property
