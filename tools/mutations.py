@@ -38,7 +38,9 @@ CHANGES = {
     "<": ["<=", ">"], "<=": ["<", ">="], ">": [">=", "<"], ">=": [">", "<="], "==": ["!="], "!=": ["=="],
     "and": ["or"], "or": ["and"], "not": [""], "is": ["is not"], "in": [],
 }  # fmt: skip
-HASH = "from vibro_sweep.engine.simd.jit import source_hash as s; print(s())"  # and makes the folder of kernels
+HASH = (
+    "from vibro_sweep.engine.simd.kernel_cache import source_hash as s; print(s())"  # and makes the folder of kernels
+)
 
 
 def changes(text: str) -> dict[int, list[tuple[int, str, str]]]:

@@ -10,6 +10,7 @@ from .cli.console import INTERRUPTED, prepare_process
 
 def program() -> None:
     """The command line as a process, which it ends."""
+    os.environ.pop("MPLBACKEND", None)  # of a notebook that starts this program, say: it shows no window
     interrupt.install()
     prepare_process()
     gc.disable()  # until cli.console.all_is_imported

@@ -34,7 +34,7 @@ def told(tmp_path, program: str) -> str:
 @pytest.mark.parametrize(
     "before, expected",
     [
-        ("", f"vibro_sweep: {MESSAGE}vibro_sweep: warning: beware\n"),
+        ("", f"vibro-sweep: {MESSAGE}vibro-sweep: warning: beware\n"),
         *slow_cases(
             ("logging.basicConfig(format='of mine: %(message)s')", f"of mine: {MESSAGE}of mine: beware\n"),
             ("logging.getLogger('vibro_sweep').setLevel(logging.WARNING)", "vibro_sweep: warning: beware\n"),

@@ -36,7 +36,7 @@ def program(tmp_path):
         assert done.returncode == 0, done.stderr
         double, triple, hits = done.stdout.split()
         assert (double, triple) == ("3.0", "4.5")
-        return int(hits), [line for line in done.stderr.splitlines() if not line.startswith("vibro_sweep: compil")]
+        return int(hits), [line for line in done.stderr.splitlines() if not line.startswith("vibro-sweep: compil")]
 
     return run
 
@@ -85,11 +85,11 @@ def test_a_cut_entry_is_named_and_mended(program, tmp_path, cuts):
 
 
 @pytest.fixture
-def small_disk(tmp_path):
-    """A full disk, as a file system of its own."""
-    place = tmp_path / "small"
+def small_disk(tmp_path, request):
+    """A file system of its own, of 16 kB or what is asked for."""
+    place, size = tmp_path / "small", f"size={getattr(request, 'param', '16k')}"
     place.mkdir()
-    made = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=16k", "none", place], capture_output=True, check=False)
+    made = subprocess.run(["mount", "-t", "tmpfs", "-o", size, "none", place], capture_output=True, check=False)
     if made.returncode:
         pytest.skip("no file system can be mounted here")
     yield place
@@ -111,6 +111,39 @@ def test_a_folder_that_cannot_be(program, tmp_path):
     (tmp_path / "file").write_text("")
     hits, told = program(NUMBA_CACHE_DIR=str(tmp_path / "file"))
     assert hits == 0 and len(told) == 1 and str(tmp_path / "file") in told[0]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("small_disk", ["4m"], indirect=True)
+def test_a_folder_that_can_only_be_read(program, small_disk):
+    """Of another user, or of a container: what is there is loaded."""
+    folder = str(small_disk / "cache")
+    assert program(NUMBA_CACHE_DIR=folder) == (0, [])
+    subprocess.run(["mount", "-o", "remount,ro", small_disk], check=True)
+    assert program(NUMBA_CACHE_DIR=folder) == (1, [])
+
+
+def test_one_of_several_processes_compiles(tmp_path):
+    """The others wait for it, and load what it has compiled; no lock is left."""
+    slow = "while not os.path.exists('go'):\n    time.sleep(0.01)\n"
+    (tmp_path / "program.py").write_text(
+        PROGRAM.replace("@jit", slow + "@jit", 1).replace("\n", "\nimport os, time\n", 1)
+    )
+    environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path / "cache")}
+    options = {"cwd": tmp_path, "env": environment, "stdout": subprocess.PIPE, "text": True}
+    several = [subprocess.Popen([sys.executable, "program.py"], **options) for _ in range(4)]
+    (tmp_path / "go").write_text("")
+    hits = sorted(int(one.communicate()[0].split()[-1]) for one in several)
+    assert hits == [0, 1, 1, 1] and not [*tmp_path.rglob("*.lock")]
+
+
+@pytest.mark.slow
+def test_without_a_folder_the_wait_is_named(program, tmp_path):
+    (tmp_path / "file").write_text("")
+    said = "import logging\nlogging.basicConfig(level=logging.INFO, format='%(message)s')\n"
+    (tmp_path / "program.py").write_text(said + PROGRAM)
+    _, lines = program(NUMBA_CACHE_DIR=str(tmp_path / "file"))
+    assert lines.count("compiling kernels") == 1
 
 
 @pytest.mark.slow

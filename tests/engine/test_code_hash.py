@@ -12,7 +12,7 @@ from support import slow_cases
 
 import vibro_sweep
 from vibro_sweep.driver import code_hash
-from vibro_sweep.engine.simd import jit
+from vibro_sweep.engine.simd import kernel_cache
 
 PACKAGE = Path(vibro_sweep.__file__).parent
 MODULES = {path.relative_to(PACKAGE).as_posix() for path in PACKAGE.rglob("*.py")}
@@ -125,19 +125,19 @@ def test_the_compiled_kernels_are_those_of_the_engine_alone(tmp_path):
     shutil.copytree(PACKAGE, home, ignore=shutil.ignore_patterns("__pycache__"))
 
     def folder():
-        code = "from vibro_sweep.engine.simd import jit; print(jit.source_hash())"
+        code = "from vibro_sweep.engine.simd import kernel_cache; print(kernel_cache.source_hash())"
         command = [sys.executable, "-c", code]
         environment = os.environ | {"PYTHONPATH": str(tmp_path)}
         done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
         return done.stdout.strip()
 
-    assert folder() == jit.source_hash()
+    assert folder() == kernel_cache.source_hash()
     with (home / "scene" / "problems.py").open("a") as file:
         file.write("# another\n")
-    assert folder() == jit.source_hash()
+    assert folder() == kernel_cache.source_hash()
     with (home / "tables" / "outcomes.py").open("a") as file:
         file.write("# another\n")
-    assert folder() != jit.source_hash()
+    assert folder() != kernel_cache.source_hash()
 
 
 @pytest.mark.parametrize("setting", ["NUMBA_CPU_FEATURES=+avx2", *slow_cases("OPENBLAS_CORETYPE=Prescott")])

@@ -11,7 +11,7 @@ from support.scene_texts import parsed
 import vibro_sweep as vs
 from vibro_sweep.driver.blocks import plan_of
 from vibro_sweep.engine.records import POINT, new_results, result_of
-from vibro_sweep.engine.simd.jit import ENGINE, SHARED
+from vibro_sweep.engine.simd.kernel_cache import ENGINE, SHARED
 from vibro_sweep.model.catalogue import OF_A_SYSTEM
 from vibro_sweep.model.models import MODELS
 from vibro_sweep.model.models.two_mass import NAMES

@@ -99,7 +99,7 @@ def said(words: list[str]) -> Said:
         return Said(REFUSED, end.err)
     if words[0] == "info" and ("checksums    none" in end.out or "unfinished" in end.out):
         return Said(DAMAGED, end.out)
-    warnings = [line for line in end.err.splitlines(True) if not line.startswith("vibro_sweep: compil")]
+    warnings = [line for line in end.err.splitlines(True) if not line.startswith("vibro-sweep: compil")]
     return Said(READ, "", re.sub(r"\d{4}-\d\d-\d\dT\S*", "", "".join([end.out, *warnings])))
 
 

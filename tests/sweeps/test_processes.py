@@ -53,5 +53,5 @@ def test_the_same_bits(options, code, tmp_path):
     done = subprocess.run(
         [sys.executable, *options, script], capture_output=True, text=True, timeout=300, env=surroundings
     )
-    told = [line for line in done.stderr.splitlines() if not line.startswith("vibro_sweep: compil")]
+    told = [line for line in done.stderr.splitlines() if not line.startswith("vibro-sweep: compil")]
     assert (done.stdout.strip(), told) == (expected, [])

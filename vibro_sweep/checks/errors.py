@@ -25,3 +25,7 @@ class ArgumentTypeError(VibroSweepError, TypeError):
 
 class MissingPackageError(VibroSweepError, ImportError):
     """A package that is needed is not installed."""
+
+
+class MachineError(VibroSweepError, OSError):
+    """The machine, or how it is set up, cannot do what is needed."""

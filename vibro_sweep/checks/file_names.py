@@ -76,11 +76,17 @@ def _check_name(name: str, value: object, path: str) -> None:
             raise ArgumentError(not_allowed(name, value, f"{WHAT}, and shorter")) from None
 
 
-def read_bytes(path: Path, most: int) -> bytes:
-    """The bytes of a file, or its first bytes. Raises FileError where it is not a file, or cannot be read."""
+def read_bytes(path: Path, most: int, pipes: bool = False) -> bytes:
+    """The bytes of a file, or its first bytes. Raises FileError where it is not a file, or cannot be read.
+
+    pipes : whether it may be a pipe into which a program writes
+    """
     try:
         with open(path, "rb", opener=_without_waiting) as file:
-            if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
+            mode = os.fstat(file.fileno()).st_mode
+            if pipes and stat.S_ISFIFO(mode):
+                return _piped(file.fileno(), path, most)
+            if not stat.S_ISREG(mode):
                 raise FileError(path, "is not a regular file")
             return file.read(most)
     except FileError:
@@ -89,6 +95,21 @@ def read_bytes(path: Path, most: int) -> bytes:
         raise MissingFileError(path) from None
     except OSError as error:
         raise FileError(path, f"cannot be read: {error.strerror or error}") from None
+
+
+def _piped(pipe: int, path: Path, most: int) -> bytes:
+    """What comes out of a pipe, that was opened without waiting, until it is closed."""
+    parts = []
+    try:
+        parts.append(os.read(pipe, most))
+        if not parts[0]:
+            raise FileError(path, "is not a regular file, and nothing comes out of it")
+    except BlockingIOError:  # nothing yet
+        pass
+    os.set_blocking(pipe, True)
+    while (left := most - sum(map(len, parts))) and (part := os.read(pipe, left)):
+        parts.append(part)
+    return b"".join(parts)
 
 
 def _without_waiting(path, flags: int) -> int:

@@ -16,7 +16,8 @@ class _Notices(logging.Handler):
         if self.others(record.name) or _is_worker():
             return
         level = "" if record.levelno < logging.WARNING else f"{record.levelname.lower()}: "
-        print(f"vibro_sweep: {level}{record.getMessage()}", file=sys.stderr, flush=True)
+        if sys.stderr is not None:  # of a program without a terminal
+            print(f"vibro-sweep: {level}{record.getMessage()}", file=sys.stderr, flush=True)
 
     def others(self, name: str) -> bool:
         """Whether somebody else shows what this logger says."""

@@ -12,9 +12,20 @@ from vibro_sweep.tables.picture_kinds import PICTURES
 
 from . import interrupt
 from .computing import Computation, compute, compute_windows
-from .console import BAD_INPUT, BAD_POINTS, EXIT_STATUSES, all_is_imported, ended, input_errors, messages, say
+from .console import (
+    BAD_INPUT,
+    BAD_POINTS,
+    EXIT_STATUSES,
+    InputError,
+    all_is_imported,
+    ended,
+    input_errors,
+    messages,
+    say,
+)
 from .options import key_and_value, number_in, positive
 from .options import output as output_option
+from .options import scene_file as scene_argument
 from .usage import called
 
 app = typer.Typer(
@@ -26,7 +37,7 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
-SceneFile = Annotated[Path, typer.Argument(metavar="SCENE.yaml", exists=True, dir_okay=False)]
+SceneFile = Annotated[Path, typer.Argument(metavar="SCENE.yaml", parser=scene_argument, help="- reads standard input.")]
 DataFile = Annotated[Path, typer.Argument(metavar="FILE.h5", exists=True, dir_okay=False)]
 Scheduler = Annotated[
     str | None, typer.Option(metavar="ADDRESS", help="Compute on the workers of a dask scheduler instead.")
@@ -73,6 +84,7 @@ def run(
     quiet: Quiet = False,
 ):
     """Compute a scene and write its HDF5 file."""
+    unnamed = output is None and scene_file.is_fifo()
     output = output or Path(f"{scene_file.stem}.h5")
     computation = Computation(output, workers, scheduler, resume, overwrite, plot, quiet, ("run", str(scene_file)))
     computation.announce()
@@ -80,6 +92,8 @@ def run(
 
     with input_errors(SceneError):
         scene = load_scene(scene_file)
+    if unnamed:
+        raise InputError("a scene that comes out of a pipe has no name from which that of the file follows: add -o")
     computation.check_outputs(scene.inputs)
     bad = compute(computation, scene)
     if plot:

@@ -21,7 +21,17 @@ def positive(text: str) -> int:
 def output_file(text: str) -> Path:
     if text.endswith(("/", os.sep)):
         raise typer.BadParameter(f"{text!r} names a folder; it must name a file")
-    return Path(text)
+    return Path(text).expanduser()  # --output=~/FILE: a shell replaces ~ at the beginning of a word alone
+
+
+def scene_file(text: str) -> Path:
+    """The path of a scene; - is what comes from the standard input."""
+    path = Path("/dev/stdin" if text == "-" else text)
+    if not path.exists():
+        raise typer.BadParameter(f"file {text!r} does not exist")
+    if path.is_dir():
+        raise typer.BadParameter(f"file {text!r} is a directory")
+    return path
 
 
 def output(metavar: str, default: str) -> OptionInfo:

@@ -1,7 +1,7 @@
 """A hash of all that numbers depend on: equal hashes give equal numbers.
 
 Files and workers are compared by it. The folder of compiled kernels is named by the engine's sources alone
-(engine/simd/jit.py), so that other edits compile nothing anew.
+(engine/simd/kernel_cache.py), so that other edits compile nothing anew.
 """
 
 import functools

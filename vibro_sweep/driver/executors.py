@@ -4,12 +4,14 @@ import contextlib
 import os
 import queue
 import signal
+import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import BrokenExecutor, CancelledError, Executor, ProcessPoolExecutor
 from functools import partial
-from multiprocessing import get_context, parent_process
+from multiprocessing import current_process, get_context, parent_process
+from pathlib import Path
 from typing import Any
 
 from vibro_sweep.driver.compute import BlockError, InternalError, RunError
@@ -19,6 +21,7 @@ ATTEMPTS = 3  # at a job whose worker dies: it may be the job that kills them
 FINAL = (BlockError, BrokenExecutor, CancelledError, ImportError)  # another attempt would not help
 PATIENCE = 1.0  # seconds after which to look whether workers have joined, or the scheduler has died
 GIVEN_UP = "the executor gave up its work: the scheduler has died, or somebody has cancelled it"
+GUARD = 'under `if __name__ == "__main__":`'
 AT_ONCE = 4  # short jobs that are sent together
 AHEAD = 2  # times as many of these as there are workers
 
@@ -88,6 +91,8 @@ def _given_up(job: Any, attempt: int, error: BaseException) -> RunError:
     if isinstance(error, BlockError):
         return error
     if isinstance(error, BrokenExecutor):
+        if _is_script_without_guard():
+            return RunError(f"workers run the whole script again, for want of a line in it: put what it does {GUARD}")
         return RunError(f"a worker process died, killed or out of memory, and its pool with it ({reason})")
     if isinstance(error, CancelledError):
         return RunError(GIVEN_UP)
@@ -96,12 +101,22 @@ def _given_up(job: Any, attempt: int, error: BaseException) -> RunError:
     return RunError(f"{attempt} attempts at {job} were lost with their workers ({reason})")
 
 
+def _is_script_without_guard() -> bool:
+    """Whether Python runs a file in which nothing asks whether it is the program, or a module of a worker."""
+    try:
+        return "__main__" not in Path(sys.modules["__main__"].__file__).read_text()
+    except (AttributeError, KeyError, TypeError, OSError, ValueError):
+        return False
+
+
 @contextlib.contextmanager
 def workers_of(workers: int | None, executor: Executor | None) -> Iterator[Executor | None]:
     """The executor that computes: the caller's, processes of our own for several workers, or None: this process."""
     if executor is not None or workers in (None, 1):
         yield executor
         return
+    if getattr(current_process(), "_inheriting", False):  # a worker that runs the script again, to import it
+        os._exit(1)
     pool = ProcessPoolExecutor(workers, get_context("spawn"), _begin)
     try:
         yield pool

@@ -22,7 +22,7 @@ def progress_bar(quiet: bool) -> Iterator[Tell | None]:
     """What shows (done, total); None if quiet."""
     if quiet:
         yield None
-    elif (notebook := _in_notebook()) or (sys.stderr is not None and sys.stderr.isatty()):
+    elif (notebook := _in_notebook()) or getattr(sys.stderr, "isatty", bool)():
         from tqdm import tqdm  # not needed elsewhere
 
         (columns, rows), delay = get_terminal_size(), DELAY if notebook else 0.0

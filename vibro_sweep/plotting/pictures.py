@@ -57,7 +57,12 @@ def _encoded(fig: Figure, suffix: str) -> bytes:
     if isinstance(fig, Film) and suffix in FILMS:
         return fig.encoded(suffix)
     picture = io.BytesIO()
-    fig.savefig(picture, format=suffix[1:], dpi=fig.dpi)
+    try:
+        fig.savefig(picture, format=suffix[1:], dpi=fig.dpi)
+    except RuntimeError as error:
+        if not matplotlib.rcParams["text.usetex"]:
+            raise
+        raise PlotError(f"matplotlib is set up to write with LaTeX (text.usetex), which fails: {error}") from None
     return picture.getvalue()
 
 

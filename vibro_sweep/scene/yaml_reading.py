@@ -15,7 +15,7 @@ def text_of(path: str | Path) -> tuple[str, str]:
     """The text of a YAML file, and its name. Raises SceneError for what is not a text, and as `read_bytes` does."""
     path = checked_path("path", path)
     name = os.fsencode(path.name).decode(errors="replace")  # the name of a file need not be text
-    data = read_bytes(path, MAX_BYTES + 1)
+    data = read_bytes(path, MAX_BYTES + 1, pipes=True)
     if data.startswith(HDF5):
         raise SceneError(name, ["is a data file, not a scene: `vibro-sweep info` and `plot` read it"])
     if len(data) > MAX_BYTES:

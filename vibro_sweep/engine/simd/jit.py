@@ -1,23 +1,21 @@
-"""All jit policy in one file: nogil, fused multiply-adds as the only fastmath, no reference counts, cached on disk.
-
-numba's cache does not see an edit in a helper's file, so the cache folder is named by a hash of all kernel sources:
-those of the engine, and what kernels have of the tables.
-"""
+"""All jit policy in one file: nogil, fused multiply-adds as the only fastmath, no reference counts, kept on disk."""
 
 import contextlib
 import functools
 import hashlib
-import logging
-import os
-import tempfile
-import time
 from pathlib import Path
 
 import llvmlite
 import numba
 from numba.core import config, types
-from numba.core.caching import FunctionCache
 from numba.core.cpu import CPUTargetOptions
+
+from vibro_sweep.checks.errors import MachineError
+from vibro_sweep.engine.simd import kernel_cache
+from vibro_sweep.engine.simd.kernel_cache import FOLDER, cache_of
+
+if config.DISABLE_JIT:
+    raise MachineError("NUMBA_DISABLE_JIT is set, and kernels need numba's compiler: unset it")
 
 TESTED = ("0.62", "0.63", "0.64", "0.65", "0.66", "0.67", "0.68")  # versions of numba with which compiler.py was tried
 IS_TESTED = ".".join(map(str, numba.version_info.short)) in TESTED
@@ -52,93 +50,6 @@ def _digest(name: str) -> int:
 
 for _kind in (types.Record, types.NamedTuple, types.NamedUniTuple):
     _kind.mangling_args = _mangling
-
-ENGINE, TABLES = Path(__file__).parents[1], Path(__file__).parents[2] / "tables"
-SHARED = "bifurcations.py", "exponents.py", "outcomes.py"  # of the tables: constants and formulas in kernels
-
-
-@functools.cache  # of the sources as they were imported
-def source_hash() -> str:
-    """Names the folder of compiled kernels; what all numbers depend on is said by driver/code_hash.py."""
-    digest = hashlib.sha256()
-    for source in [*sorted(ENGINE.rglob("*.py")), *(TABLES / name for name in SHARED)]:
-        digest.update(source.read_bytes())
-    return digest.hexdigest()[:16]
-
-
-def _cache_folder() -> str | None:
-    """The folder in which compiled kernels are kept; None where there is no such place."""
-    home = os.environ.get("XDG_CACHE_HOME", "")
-    if not os.path.isabs(home):  # to be ignored, says the XDG base directory specification
-        home = os.path.expanduser("~/.cache")
-    folder = os.path.join(config.CACHE_DIR or os.path.join(home, "vibro_sweep"), source_hash())
-    try:
-        if not (config.CACHE_DIR or os.path.isabs(home)):
-            raise OSError("there is no home folder; set NUMBA_CACHE_DIR")
-        os.makedirs(folder, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder):
-            return folder
-    except OSError as error:
-        _warn_once(folder, error)
-        return None
-
-
-def _warn_once(folder: str, error: Exception) -> None:
-    """Log once why compiled kernels cannot be kept in a folder."""
-    global _warned
-    if not _warned:
-        _warned = True
-        reason = getattr(error, "strerror", None) or str(error) or type(error).__name__
-        _log.warning("compiled kernels cannot be kept in %s (%s): they are compiled anew", folder, reason)
-
-
-class _Cache(FunctionCache):
-    """numba's cache, but a kernel that cannot be read is compiled anew, and one that cannot be written is not kept."""
-
-    def load_overload(self, sig, target_context):
-        """Without this, numba would load all that compiling takes, scipy too, before it looks for a compiled kernel."""
-        try:
-            found = self._load_overload(sig, target_context)
-        except Exception as error:  # of pickle, any: the cached kernel is empty or cut off
-            _warn_once(self.cache_path, error)
-            with contextlib.suppress(OSError):
-                self.flush()
-            found = None
-        if found is None:
-            _announce(self.cache_path)
-            self._began = time.perf_counter()
-        return found
-
-    def save_overload(self, sig, data):
-        seconds = time.perf_counter() - self._began
-        if seconds > WORTH_SAYING:
-            _log.info("compiled %s in %.0f s", self._py_func.__name__, seconds)
-        try:
-            super().save_overload(sig, data)
-        except OSError as error:
-            _warn_once(self.cache_path, error)
-
-
-def _announce(folder: str) -> None:
-    """Log once that kernels are being compiled."""
-    global _announced
-    if not _announced:
-        _announced = True
-        _log.info("compiling kernels, once: they are kept in %s", folder)
-        if not AS_ONE:
-            _log.info("with numba %s this takes about %s as long: %s", numba.__version__, SLOWER, _why_plainly())
-
-
-def _why_plainly() -> str:
-    """Why kernels do not compile as one."""
-    return "it compiles them otherwise than expected" if IS_TESTED else f"tried were {', '.join(TESTED)}"
-
-
-WORTH_SAYING = 1.0  # seconds
-SLOWER = "five times"
-_log = logging.getLogger("vibro_sweep")
-_warned = _announced = False
-_FOLDER = _cache_folder()
 
 
 class _Part:
@@ -196,7 +107,7 @@ class exported:  # noqa: N801  # a decorator
     def __init__(self, function):
         functools.update_wrapper(self, function)
         self._part, self._whole = jit(function), _compiled(function, self._compiler())
-        _enable_caching(self._whole)
+        self._whole._cache = cache_of(function)
 
     @staticmethod
     def _compiler():
@@ -256,7 +167,7 @@ def _usable() -> bool:
     """`_works`, tried once for each numba and kept beside the compiled kernels."""
     if WholeCompiler is None:
         return False
-    kept = _FOLDER and Path(_FOLDER, f"compiles-as-one-{numba.__version__}-{llvmlite.__version__}")
+    kept = FOLDER and Path(FOLDER, f"compiles-as-one-{numba.__version__}-{llvmlite.__version__}")
     try:
         return kept.read_text() == "yes"
     except (AttributeError, OSError, ValueError):
@@ -267,17 +178,10 @@ def _usable() -> bool:
     return works
 
 
-def _enable_caching(dispatcher):
-    if _FOLDER is None:
-        return
-    before, config.CACHE_DIR = config.CACHE_DIR, _FOLDER
-    try:
-        dispatcher._cache = _Cache(dispatcher.py_func)
-    finally:
-        config.CACHE_DIR = before
-
-
 if not _usable():
     NoInlineCompiler = PartCompiler = QuickCompiler = SmallCompiler = WholeCompiler = None
 
 AS_ONE = WholeCompiler is not None  # else other multiply-adds are fused, and last digits differ
+if not AS_ONE:
+    reason = "it compiles them otherwise than expected" if IS_TESTED else f"tried were {', '.join(TESTED)}"
+    kernel_cache.slower = f"with numba {numba.__version__} this takes about five times as long: {reason}"
