@@ -1,7 +1,7 @@
 """Bifurcation sweeps of linear oscillators that strike stops, with certified impacts and Lyapunov exponents.
 
 At a prompt
-    System, Oscillator, grazing, simulate, lyapunov, discontinuity_map
+    System, Oscillator, Contact, grazing, simulate, lyapunov, discontinuity_map
 Sweeps
     sweep (from Python), load_scene and run (from YAML to an HDF5 file), open (that file as an xarray.Dataset), plot,
     explore (a page on which the diagram follows sliders)
@@ -22,6 +22,7 @@ from vibro_sweep.checks import notices
 __version__ = "0.3.0.dev0"
 
 __all__ = [
+    "Contact",
     "Oscillator",
     "ParameterError",
     "PlotError",
@@ -71,6 +72,7 @@ if TYPE_CHECKING:
     from vibro_sweep.driver.windows import windows
     from vibro_sweep.files.file_errors import StoreError
     from vibro_sweep.live.served_page import explore
+    from vibro_sweep.model.contact_element import Contact
     from vibro_sweep.model.grazing import grazing
     from vibro_sweep.model.oscillator import Oscillator, System
     from vibro_sweep.plotting import PlotError
@@ -78,6 +80,7 @@ if TYPE_CHECKING:
     from vibro_sweep.scene import SceneError, load_scene
 else:
     _HOME = {
+        "Contact": "model.contact_element",
         "Oscillator": "model.oscillator",
         "ParameterError": "checks.refusals",
         "PlotError": "plotting",

@@ -138,6 +138,9 @@ def calls(made: dict[str, Any]) -> dict[str, Call]:
     observe = each("observe", ["section"], {"section"}, ("section", "impacts"), (word for word in ["section"]))
     observe["observe"][-1] = {"observe": np.array(["section"])}
     trajectory = each("trajectory", None, {"periods": 1, "samples": 3})
+    of_contact = {"contact_normal": [{"contact_normal": [1, 0]}, {"contact_normal": np.array([1.0])}]}
+    of_contact |= each("b", 1, np.float64(0.5)) | each("offset", 0.0, 1) | each("R", 0.8, 1) | each("R_left", None, 0.5)
+    of_contact |= each("stops", "both", "left") | OF_STOPS
     of_model = each("name", "one_mass", np.str_("one_mass"))
     of_model["given"] = [{"zeta": 0.1, "F": 1, "omega": 1, "R": 0.5, "b": 0.3, "base": one} for one in (True, False)]
     simulated, mapping, scene = made["Orbit"], made["DiscontinuityMap"], made["Scene"]
@@ -146,7 +149,8 @@ def calls(made: dict[str, Any]) -> dict[str, Call]:
         "System": Call(vs.System, of_system),
         "System.physical": Call(vs.System.physical, of_physical),
         "System.replace": Call(SYSTEM.replace, any_of("changes", of_system)),
-        "Oscillator": Call(vs.Oscillator, pair),
+        "Oscillator": Call(vs.Oscillator, pair | each("contacts", None)),
+        "Contact": Call(vs.Contact, of_contact),
         "Oscillator.named": Call(vs.Oscillator.named, of_model),
         "System.named": Call(vs.System.named, of_model),
         "Oscillator.replace": Call(made["Oscillator"].replace, any_of("changes", of_pair)),

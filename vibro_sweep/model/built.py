@@ -29,7 +29,9 @@ class Built(Oscillator):
         base = _made(function, numbers)
         named = tuple(Parameter(name, name, name, rf"\mathrm{{{name}}}", free_motion=True) for name in numbers)
         model = Model(BUILD, _name(function), "", "", "", named, (), lambda given: base.masses, self._linear)
-        vars(self).update(function=function, base=base, model=model, given=dict(numbers), same_units=same_units)
+        vars(self).update(
+            function=function, base=base, model=model, given=dict(numbers), same_units=same_units, others=()
+        )
 
     def __eq__(self, other):
         return isinstance(other, Built) and (self.function, self.given) == (other.function, other.given)

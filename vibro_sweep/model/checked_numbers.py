@@ -11,6 +11,7 @@ from vibro_sweep.tables.parameters import CLEARANCE
 from vibro_sweep.tables.quantity import NUMBER, POSITIVE, Parameter, Range
 from vibro_sweep.tables.units import SI, Units
 
+SMALLEST = 1e-100  # of n of the gap n.x, and one over its largest
 UNITS_ALLOWED = "SI, or three positive numbers: what a mass, a length and a time of 1 are in kg, m and s"
 
 
@@ -57,3 +58,15 @@ def checked_number(parameter: Parameter, value: object, stops: str = "both", key
     except ParameterError as error:
         raise ParameterError(key, value, error.allowed) from None
     return number
+
+
+def checked_normal(value: Any) -> tuple[float, ...]:
+    """n of a gap, which may have any scale."""
+    normal = array_of(value, 1)
+    if normal is None or normal.size == 0 or not np.isfinite(normal).all():
+        raise ParameterError("contact_normal", value, "a list of finite numbers")
+    if not normal.any():
+        raise ParameterError("contact_normal", normal.tolist(), "other than zero: it is n of the gap n . x")
+    if not SMALLEST < np.abs(normal).max() < 1 / SMALLEST:  # its square counts
+        raise ParameterError("contact_normal", normal.tolist(), f"of a size from {SMALLEST:g} to {1 / SMALLEST:g}")
+    return tuple(normal.tolist())

@@ -4,8 +4,8 @@ from __future__ import annotations  # help() says ArrayLike, and not all that th
 
 import inspect
 import math
-from collections.abc import Iterable, Mapping
-from dataclasses import replace
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import fields, replace
 from functools import cached_property, partial
 from typing import Any, Literal
 
@@ -13,11 +13,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from vibro_sweep.checks.arguments import check_type
-from vibro_sweep.checks.not_computed import why_not_computed
+from vibro_sweep.checks.errors import ArgumentError
+from vibro_sweep.checks.not_computed import PAGE, why_not_computed
 from vibro_sweep.checks.refusals import ParameterError
 from vibro_sweep.model import wording
 from vibro_sweep.model.checked_model import checked, checked_option
 from vibro_sweep.model.checked_numbers import UNITS_ALLOWED
+from vibro_sweep.model.contact_element import NAMES as CONTACT_NAMES
+from vibro_sweep.model.contact_element import Contact, contact_of
 from vibro_sweep.model.contact_laws import OTHER_STOPS, STOP_NUMBERS
 from vibro_sweep.model.linear import Family, Linear
 from vibro_sweep.model.models import MODELS, model_named
@@ -49,6 +52,7 @@ class Oscillator:
     tau : phase in radians, or "grazing": where the gap of the free motion is largest at t = 0
     stops : both, right, left; b may be <= 0 where there is one
     units : for labels: SI; or what a mass, a length and a time of 1 are in kg, m and s; left out: nondimensional
+    contacts : in place of contact_normal, b, R, ...: a list of `Contact`; several are not computed yet
 
     Numbers are attributes: `force`, and `force1`, `force2`, ... too. Raises ParameterError for what cannot be.
     `Oscillator.named("chain", m=..., ...)` makes the other models (`vibro-sweep models`).
@@ -66,19 +70,31 @@ class Oscillator:
     def __init__(
         self, M: ArrayLike, K: ArrayLike, C: ArrayLike | None = None, *, modal_damping: ArrayLike | None = None,
         rayleigh: ArrayLike | None = None, force: ArrayLike = 0, force_cos: ArrayLike = 0, constant: ArrayLike = 0,
-        force_power: float = 0, contact_normal: ArrayLike, omega: float, b: float, offset: float = 0.0,
+        force_power: float = 0, contact_normal: ArrayLike | None = None, omega: float, b: float | None = None,
+        offset: float = 0.0,
         R: float | None = None, R_left: float | None = None, k_stop: float | None = None, c_stop: float | None = None,
         preload: float | None = None, k_stop_left: float | None = None, c_stop_left: float | None = None,
         preload_left: float | None = None, release: Literal["displacement", "force"] = "displacement",
         tau: float | Literal["grazing"] = "grazing",
         stops: Literal["both", "right", "left"] = "both",
         units: Literal["SI"] | ArrayLike | None = None,
+        contacts: Sequence[Contact | Mapping] | None = None,
     ) -> None:  # fmt: skip
         given = {name: value for name, value in locals().items() if name != "self"}
         self._set(MODELS["linear"], given)
 
-    def _set(self, model: Model, given: Mapping[str, Any]) -> None:
-        vars(self).update(model=model, given=checked(model, given))
+    def _set(self, model: Model, given: Mapping[str, Any], others: tuple[Contact, ...] = ()) -> None:
+        given = dict(given)
+        if (contacts := given.pop("contacts", None)) is not None:
+            others = _contacts_in(contacts)
+            if "contact_normal" in (one.name for one in model.options):  # the first one is its own
+                _check_left_out(given)
+                given, others = given | vars(others[0]), others[1:]
+        vars(self).update(model=model, given=checked(model, given), others=others)
+        for i, one in enumerate(others, 2):
+            if len(one.contact_normal) != self.masses:
+                what = f"a list of {self.masses} numbers, one for each mass"
+                raise ParameterError(f"contact_normal of contact {i}", [*one.contact_normal], what)
 
     @classmethod
     def named(cls, name: str, **given: Any) -> Oscillator:
@@ -94,10 +110,6 @@ class Oscillator:
         (1, 0.6)
         """
         return _made(model_named(name), given)
-
-    def _set(self, model: Model, given: Mapping[str, Any]) -> None:
-        object.__setattr__(self, "model", model)
-        object.__setattr__(self, "given", checked(model, given))
 
     def __setattr__(self, name, value):
         raise AttributeError(f"{name}: an Oscillator is not changed; `replace` makes another one")
@@ -116,18 +128,34 @@ class Oscillator:
         return [*super().__dir__(), *self.given, *self.described]
 
     def __reduce__(self):
-        return _again, (self.model.name, self.given)
+        return _again, (self.model.name, self.given, self.others)
 
     def __eq__(self, other):
-        return isinstance(other, Oscillator) and (self.model.name, self.given) == (other.model.name, other.given)
+        same = isinstance(other, Oscillator) and self.model.name == other.model.name
+        return same and (self.given, self.others) == (other.given, other.others)
 
     def __hash__(self):
-        return hash((self.model.name, tuple(self.given.values())))
+        return hash((self.model.name, tuple(self.given.values()), self.others))
 
     def __repr__(self) -> str:
-        arguments, complete = wording.arguments(self.given)
+        given = self.given
+        if self.others and "contact_normal" in given:  # all in one list
+            given = {name: value for name, value in given.items() if name not in CONTACT_NAMES}
+        arguments, complete = wording.arguments(given | ({"contacts": self._listed} if self.others else {}))
         by_call = complete and self.model.name == "linear"
         return f"Oscillator({arguments})" if by_call else f"<{self.model.name}: {arguments}>"
+
+    @property
+    def contacts(self) -> tuple[Contact, ...]:
+        """Its contacts; one is computed, an oscillator with several is made, printed and saved alone."""
+        own = {name: self.given[name] for name in CONTACT_NAMES if name in self.given}
+        normal = linear_of(self.model, self.given).normal
+        return Contact(**own | {"contact_normal": normal}), *self.others
+
+    @property
+    def _listed(self) -> tuple[Contact, ...]:
+        """The contacts that `contacts=` has: all where the model has none of its own."""
+        return self.contacts if "contact_normal" in self.given else self.others
 
     @cached_property
     def described(self) -> dict[str, Parameter]:
@@ -165,7 +193,9 @@ class Oscillator:
 
     @property
     def family(self) -> Family:
-        """The same oscillator by its numbers, with their derivatives."""
+        """The same oscillator by its numbers, with their derivatives. Raises ArgumentError where it has several
+        contacts."""
+        _check_one_contact(self)
         return Family(partial(_build, self.model.name, tuple(self.given.items())), completed(self.numbers))
 
     @cached_property
@@ -218,7 +248,7 @@ class Oscillator:
             else:
                 known = [one.name for one in (*self.model.numbers, *self.model.options)]
                 raise ParameterError(name, value, f"one of {', '.join(known)}")
-        return _made(self.model, given)
+        return _made(self.model, given, self.others)
 
 
 def following(model: Model, numbers: Mapping[str, Any]) -> dict[str, Any]:
@@ -227,14 +257,34 @@ def following(model: Model, numbers: Mapping[str, Any]) -> dict[str, Any]:
     return followers(numbers) | {one.name: numbers[one.follows] for one in own if numbers[one.name] is None}
 
 
-def _made(model: Model, given: Mapping[str, Any]) -> Oscillator:
+def _made(model: Model, given: Mapping[str, Any], others: tuple[Contact, ...] = ()) -> Oscillator:
     made = object.__new__(System if model is MODEL else Oscillator)
-    made._set(model, given)
+    made._set(model, given, others)
     return made
 
 
-def _again(name: str, given: Mapping[str, Any]) -> Oscillator:
-    return _made(MODELS[name], given)
+def _again(name: str, given: Mapping[str, Any], others: tuple[Contact, ...]) -> Oscillator:
+    return _made(MODELS[name], given, others)
+
+
+def _contacts_in(value: object) -> tuple[Contact, ...]:
+    """Contacts of a list of them, or of mappings. Raises ParameterError."""
+    if not isinstance(value, (list, tuple)) or not value:
+        raise ParameterError("contacts", value, "a list of one Contact or more")
+    return tuple(contact_of(f"contacts[{i}]", one) for i, one in enumerate(value))
+
+
+def _check_left_out(given: Mapping[str, Any]) -> None:
+    """Raise ParameterError for a number of a contact that is given beside the list of contacts."""
+    usual = {one.name: one.default for one in fields(Contact)}
+    for name in CONTACT_NAMES:
+        if given.get(name) is not None and given[name] != usual[name]:
+            raise ParameterError(name, given[name], "left out where `contacts` are given, which have it")
+
+
+def _check_one_contact(system: Oscillator) -> None:
+    if system.others:
+        raise ArgumentError(f"system: it has {1 + len(system.others)} contacts; those with one are computed; {PAGE}")
 
 
 def _build(name: str, given: tuple[tuple[str, Any], ...], /, **numbers) -> Linear:
@@ -355,6 +405,7 @@ def in_closed_form(system: Oscillator, swept: Iterable[str] = ()) -> bool:
 def checked_system(system: object) -> None:
     """Raise TypeError unless it is a System or an Oscillator."""
     check_type("system", system, Oscillator, "a System or an Oscillator")
+    _check_one_contact(system)  # type: ignore[arg-type]
 
 
 # what `help` shows of the parameters; absent where docstrings are (python -OO)

@@ -11,7 +11,7 @@ import numpy as np
 from vibro_sweep.checks.refusals import shown
 from vibro_sweep.model.built import Built
 from vibro_sweep.model.models import DEFAULT
-from vibro_sweep.model.oscillator import Oscillator
+from vibro_sweep.model.oscillator import Oscillator, checked_system
 from vibro_sweep.tables.coordinates import START, start, state
 from vibro_sweep.tables.observables import WORDS
 
@@ -134,6 +134,7 @@ def _system(system: Oscillator, swept) -> dict[str, Any]:
     """Numbers and options that are not what they are if they are left out; those of lists that are swept stay."""
     if isinstance(system, Built):
         return dict(system.options)
+    checked_system(system)
     kind = {} if system.model.name == DEFAULT else {"type": system.model.name}
     given = {one.name: getattr(system, one.name) for one in system.model.numbers if one.name not in swept}
     left_out = {one.name: one.default for one in system.model.numbers if one.default is not None}

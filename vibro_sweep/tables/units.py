@@ -19,7 +19,15 @@ _PLAIN = re.compile(r"[\w.+ -]{1,60}")  # of what others write, what can stand i
 
 
 class Units(NamedTuple):
-    """The units of mass, length and time: what 1 is in kg, m and s."""
+    """The units of mass, length and time: what 1 is in kg, m and s.
+
+    Examples
+    --------
+    >>> import vibro_sweep as vs
+    >>> mass = vs.Oscillator([[1]], [[1]], contact_normal=[1], omega=1, R=0.7, b=1, units=[2e-3, 1e-6, 1e-3])
+    >>> mass.units.m, mass.replace(units="SI").units
+    (1e-06, 'SI')
+    """
 
     kg: float
     m: float

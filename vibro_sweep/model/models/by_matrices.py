@@ -4,13 +4,13 @@ import numpy as np
 
 from vibro_sweep.checks.refusals import ParameterError
 from vibro_sweep.model import wording
+from vibro_sweep.model.checked_numbers import checked_normal
 from vibro_sweep.model.linear import Linear, contact
 from vibro_sweep.model.models.declaration import CONTACT, OF_STOPS, UNITS, WHICH_STOPS, Model, Option
 from vibro_sweep.model.stacks import vector
 from vibro_sweep.tables.quantity import NOT_NEGATIVE, Parameter
 
 ROUNDING = 1e-12  # of a matrix, relative to its largest entry or eigenvalue
-SMALLEST = 1e-100  # of n of the gap n.x, and one over its largest
 KINETIC = (
     "every motion must have kinetic energy; a coordinate without mass, as the charge of a circuit without inductance, "
     "may have a small one"
@@ -76,14 +76,7 @@ def _check(given) -> None:
                 raise ParameterError(
                     name, wording.plain(given[name]), "positive semidefinite: no motion may gain energy by it"
                 )
-    if not np.any(given["contact_normal"]):
-        raise ParameterError(
-            "contact_normal", wording.plain(given["contact_normal"]), "other than zero: it is n of the gap n . x"
-        )
-    if not SMALLEST < np.abs(given["contact_normal"]).max() < 1 / SMALLEST:  # its square counts
-        raise ParameterError(
-            "contact_normal", wording.plain(given["contact_normal"]), f"of a size from {SMALLEST:g} to {1 / SMALLEST:g}"
-        )
+    checked_normal(given["contact_normal"])
     several = [name for name in DAMPING if given[name] is not None]
     if len(several) > 1:
         raise ParameterError(several[1], wording.plain(given[several[1]]), f"left out where {several[0]} is given")

@@ -1,0 +1,80 @@
+"""A contact as an element of its own: a gap, the stops that bound it, and their laws."""
+
+from __future__ import annotations  # help() says ArrayLike, and not all that this may be
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from typing import Literal
+
+from numpy.typing import ArrayLike
+
+from vibro_sweep.checks.refusals import ParameterError
+from vibro_sweep.model.checked_numbers import checked_normal, checked_number
+from vibro_sweep.model.models.declaration import CONTACT, OF_STOPS, STOPS
+from vibro_sweep.model.stops import check_stops
+from vibro_sweep.tables.parameters import FREQUENCY, PHASE
+
+NUMBERS = tuple(one for one in CONTACT if one not in (FREQUENCY, PHASE))
+
+
+@dataclass(frozen=True)
+class Contact:
+    """A gap g = n . x between stops at offset - b and offset + b, or with `stops` one of them.
+
+    contact_normal : (N,) n
+    R, k_stop, c_stop, preload, .._left, release : the law of the stops, as of an `Oscillator`
+
+    Raises ParameterError for what cannot be.
+
+    Examples
+    --------
+    >>> import vibro_sweep as vs
+    >>> wall, between = vs.Contact([1, 0], b=1.0, R=0.8), vs.Contact([-1, 1], b=0.2, stops="right", k_stop=100.0)
+    >>> system = vs.Oscillator([[1, 0], [0, 2]], [[2, -1], [-1, 1]], force=[1, 0], omega=0.8, contacts=[wall, between])
+    >>> len(system.contacts), system.contacts[0] == wall
+    (2, True)
+    """
+
+    contact_normal: ArrayLike
+    b: float
+    offset: float = 0.0
+    R: float | None = None
+    R_left: float | None = None
+    k_stop: float | None = None
+    c_stop: float | None = None
+    preload: float | None = None
+    k_stop_left: float | None = None
+    c_stop_left: float | None = None
+    preload_left: float | None = None
+    release: Literal["displacement", "force"] = "displacement"
+    stops: Literal["both", "right", "left"] = "both"
+
+    def __post_init__(self):
+        for name, words in (("stops", STOPS), *((one.name, one.words) for one in OF_STOPS)):
+            value = getattr(self, name)
+            if not (isinstance(value, str) and value in words):
+                raise ParameterError(name, value, f"{', '.join(words[:-1])} or {words[-1]}")
+        object.__setattr__(self, "contact_normal", checked_normal(self.contact_normal))
+        for one in NUMBERS:
+            value = getattr(self, one.name)
+            if not (value is None and one.optional):
+                object.__setattr__(self, one.name, checked_number(one, value, self.stops))
+        check_stops(vars(self))
+
+    def __repr__(self) -> str:
+        given = {one.name: getattr(self, one.name) for one in fields(self)}
+        left_out = {one.name: one.default for one in fields(self)}
+        shown = [f"{name}={value!r}" for name, value in given.items() if value != left_out[name]]
+        return f"Contact({', '.join(shown).replace('contact_normal=', '', 1)})"
+
+
+NAMES = tuple(one.name for one in fields(Contact))
+
+
+def contact_of(key: str, value: object) -> Contact:
+    """A contact, also of a mapping with its arguments. Raises ParameterError."""
+    if isinstance(value, Contact):
+        return value
+    if not isinstance(value, Mapping) or not set(value) <= {*NAMES} or not {"contact_normal", "b"} <= set(value):
+        raise ParameterError(key, value, f"a Contact, or its {', '.join(NAMES)}")
+    return Contact(**value)
