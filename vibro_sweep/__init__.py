@@ -3,8 +3,8 @@
 At a prompt
     System, Oscillator, Contact, grazing, simulate, lyapunov, discontinuity_map
 Sweeps
-    sweep (from Python), load_scene and run (from YAML to an HDF5 file), open (that file as an xarray.Dataset), plot,
-    explore (a page on which the diagram follows sliders)
+    sweep (from Python), load_scene, estimate and run (from YAML to an HDF5 file), open (that file as an
+    xarray.Dataset), plot, explore (a page on which the diagram follows sliders)
 Periodic orbits
     periodic_orbit, continue_orbit, switch, follow_branches, bifurcation_curve, born_at_grazing, sticking_onset
     windows (of a sweep), load (what the results' `.save` wrote)
@@ -35,6 +35,7 @@ __all__ = [
     "born_at_grazing",
     "continue_orbit",
     "discontinuity_map",
+    "estimate",
     "explore",
     "follow_branches",
     "grazing",
@@ -66,6 +67,7 @@ if TYPE_CHECKING:
     from vibro_sweep.checks.refusals import ParameterError
     from vibro_sweep.driver.any_file import open
     from vibro_sweep.driver.compute import RunError
+    from vibro_sweep.driver.cost import estimate
     from vibro_sweep.driver.from_python import sweep
     from vibro_sweep.driver.loaded_results import load
     from vibro_sweep.driver.run import run
@@ -93,6 +95,7 @@ else:
         "born_at_grazing": "analysis.periodic.lcp",
         "continue_orbit": "analysis.branches.branch",
         "discontinuity_map": "analysis.single.discontinuity_map",
+        "estimate": "driver.cost",
         "explore": "live.served_page",
         "follow_branches": "analysis.branches.generations",
         "grazing": "model.grazing",

@@ -91,13 +91,13 @@ def test_a_scene_of_branches_is_changed_as_one_of_a_sweep_is(folder):
 
 
 def test_what_a_sweep_will_take_is_known_before(folder):
-    estimate = vs.load_scene(folder / "sweep.yaml").estimate()
+    scene = vs.load_scene(folder / "sweep.yaml")
+    estimate = vs.estimate(scene)
     assert estimate.orbits == 21 and estimate.seconds > 0
-    branches = vs.load_scene(folder / "lr.yaml")
-    assert branches.estimate() is None
-    for scene in (branches, vs.load_scene(folder / "sweep.yaml")):
-        with pytest.raises(vs.VibroSweepError, match="workers: 0 is not allowed"):
-            scene.estimate(workers=0)
+    with pytest.raises(vs.VibroSweepError, match="workers: 0 is not allowed"):
+        vs.estimate(scene, workers=0)
+    with pytest.raises(TypeError, match="a Scene of orbits"):
+        vs.estimate(vs.load_scene(folder / "lr.yaml"))
 
 
 def ends(windows) -> list:

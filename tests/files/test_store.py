@@ -125,7 +125,7 @@ def test_root_attributes(path):
 def test_size_is_what_the_file_takes(path):
     scene = scene_of(PLANE + ALL + TRAJECTORY.replace("5", "20000"))
     vs.run(scene, path)
-    size = scene.estimate().bytes
+    size = vs.estimate(scene).bytes
     assert size == pytest.approx(path.stat().st_size, abs=100_000) and size > 3_000_000
 
 

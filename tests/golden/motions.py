@@ -20,8 +20,6 @@ ZERO = 1e-30  # smaller multipliers are not told apart
 
 def system_record(system) -> dict:
     """What `system_of` makes the oscillator of."""
-    if isinstance(system, vs.System):
-        return {"type": "two_mass"} | {one.name: getattr(system, one.name) for one in dataclasses.fields(system)}
     return {"type": system.model.name} | {name: _plain(value) for name, value in system.given.items()}
 
 

@@ -31,7 +31,7 @@ observe: [section]
 """
 SLOW = 20  # times as many other draws as of functions that compute for longer
 COMPUTING = ("windows", "plot", "follow_branches", "bifurcation_curve", "BifurcationCurve.plot", "continue_orbit")
-COMPUTING += ("Scene.estimate", "Branch.plot", "Branch.save", "BifurcationCurve.save", "load")
+COMPUTING += ("estimate", "Branch.plot", "Branch.save", "BifurcationCurve.save", "load")
 COMPUTING += ("Orbit.plot", "PeriodicOrbit.plot", "switch", "sticking_onset", "sweep", "run", "born_at_grazing", "open")
 COMPUTING += ("Orbit.animate", "explore")
 
@@ -214,9 +214,8 @@ def calls(made: dict[str, Any]) -> dict[str, Call]:
             ),
         ),
         "Scene.to_yaml": Call(scene.to_yaml, {}),
-        "Scene.estimate": Call(scene.estimate, each("workers", None, 1, 2)),
+        "estimate": Call(vs.estimate, each("scene", scene) | each("workers", None, 1, 2)),
         "Continuation.to_yaml": Call(made["Continuation"].to_yaml, {}),
-        "Continuation.estimate": Call(made["Continuation"].estimate, each("workers", None, 1, 2)),
         "Continuation.replace": Call(
             made["Continuation"].replace,
             any_of(

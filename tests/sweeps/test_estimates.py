@@ -107,7 +107,7 @@ def test_what_check_says_of_compiling():
 
 def test_an_estimate_says_what_orbits_may_take_to_settle():
     text = "sweep: {{b: {{start: 6, stop: 6.6, num: 8}}}}\norbit: {{transient: 100, record: 100{}}}\nobserve: [section]"
-    plain, more = (scene_of(text.format(word)).estimate() for word in ("", ", settle: 19900"))
+    plain, more = (cost.estimate(scene_of(text.format(word))) for word in ("", ", settle: 19900"))
     assert plain.most == plain.seconds > 0 and "settle" not in cost_text(plain)
     assert more.most == pytest.approx(100 * more.seconds)
     assert "if all orbits go on as far as `settle`" in cost_text(more)

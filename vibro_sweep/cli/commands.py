@@ -230,19 +230,20 @@ def check(scene_file: SceneFile):
 
     Orbits are measured for that: kernels that are not there yet are compiled first.
     """
-    from vibro_sweep.scene import SceneError, load_scene
+    from vibro_sweep.scene import Scene, SceneError, load_scene
 
     with input_errors(SceneError):
         scene = load_scene(scene_file)
 
     from vibro_sweep.driver.compute import RunError
+    from vibro_sweep.driver.cost import estimate
 
     from .summaries import cost_text
 
     say(f"{scene_file}: {scene}")
     all_is_imported()
     with input_errors(RunError), messages(quiet=False):
-        cost = scene.estimate()
+        cost = estimate(scene) if isinstance(scene, Scene) else None
     say("  time      of branches and curves is not known before" if cost is None else cost_text(cost))
 
 

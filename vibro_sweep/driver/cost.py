@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numba.core import event
 
-from vibro_sweep.checks.arguments import checked_count
+from vibro_sweep.checks.arguments import check_type, checked_count, names_its_arguments
 from vibro_sweep.driver import MOST_WORKERS
 from vibro_sweep.driver.block_size import BlockSize
 from vibro_sweep.driver.blocks import blocks
@@ -40,7 +40,7 @@ class Estimate:
     >>> text += "sweep: {b: {start: 6.4, stop: 6.6, num: 3}}, orbit: {transient: 100, record: 50}}"
     >>> with open("cost.yaml", "w") as file:
     ...     _ = file.write(text)
-    >>> cost = vs.load_scene("cost.yaml").estimate()
+    >>> cost = vs.estimate(vs.load_scene("cost.yaml"))
     >>> cost.orbits, cost.periods, cost.seconds > 0
     (3, 450, True)
     """
@@ -53,8 +53,23 @@ class Estimate:
     compiling: float
 
 
+@names_its_arguments
 def estimate(scene: Scene, workers: int | None = None) -> Estimate:
-    """The estimated cost of `run` with so many threads, by default one for each core. ValueError for such a number."""
+    """Orbits, bytes and seconds that `run` will take with so many threads, by default one for each core.
+
+    Some orbits are computed for that. Of branches and curves it is known when they are followed. Raises TypeError for
+    what is not a scene of orbits.
+
+    Examples
+    --------
+    >>> import vibro_sweep as vs
+    >>> with open("long.yaml", "w") as file:
+    ...     _ = file.write("{system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 6.6}, "
+    ...                    "orbit: {transient: 100, record: 1.0e+9}}")
+    >>> vs.estimate(vs.load_scene("long.yaml")).seconds > 60
+    True
+    """
+    check_type("scene", scene, Scene, "a Scene of orbits, as of `load_scene`")
     if workers is not None:
         workers = checked_count("workers", workers, 1, MOST_WORKERS)
     periods, compiling = scene.transient + scene.record, []

@@ -6,7 +6,6 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from vibro_sweep.checks.arguments import checked_count
 from vibro_sweep.checks.refusals import ParameterError, cut, not_allowed
 from vibro_sweep.model import wording
 from vibro_sweep.model.oscillator import Oscillator
@@ -83,11 +82,6 @@ class Continuation:
             raise SceneError(self.name, [not_allowed("origin", origin, f"one of {', '.join(ORIGINS)}")])
         result = _continuation_of(continuation_data(self, changes), self.name, "")
         return replace(result, text=result.to_yaml(), source=self.source)
-
-    def estimate(self, workers: int | None = None) -> None:
-        """None: what branches and curves take is known when they are followed; of sweeps `Scene.estimate` says it."""
-        if workers is not None:
-            checked_count("workers", workers, 1)
 
     @property
     def inputs(self) -> list[Path]:

@@ -5,7 +5,6 @@ import textwrap
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 from pydantic import ValidationError
@@ -28,9 +27,6 @@ from .starts import Start, start_of, start_problems, stops_of
 from .system import kind_of, sweep_of, system_of
 from .written import changed, data_of, yaml_of
 from .yaml_text import YAMLTextError, lines_of, read_yaml
-
-if TYPE_CHECKING:
-    from vibro_sweep.driver.cost import Estimate
 
 _ABOUT = ("name", "given", "source")  # fields that say nothing of what is computed
 
@@ -145,13 +141,6 @@ class Scene:
         if state is not None and len(state) != count:
             raise SceneError(self.name, [problem("start", state.tolist(), f"must be {count} numbers")])
         return replace(result, source=self.source)
-
-    def estimate(self, workers: int | None = None) -> "Estimate":
-        """Orbits, bytes and seconds of a run with so many threads, by default one for each core; some orbits are
-        measured for that."""
-        from vibro_sweep.driver.cost import estimate
-
-        return estimate(self, workers)
 
     @property
     def inputs(self) -> list[Path]:
