@@ -13,7 +13,8 @@ FIRST = "quickstart"
 
 def explore(path: Path | None, port: int, browser: bool) -> None:
     """Serve the page until Ctrl-C. Raises InputError where packages are missing or the port is taken."""
-    from vibro_sweep.live.extra import MissingPackageError, needed
+    from vibro_sweep.checks.errors import MissingPackageError
+    from vibro_sweep.live.extra import needed
 
     with input_errors(MissingPackageError), needed():
         from vibro_sweep.live.server import bound, serve

@@ -11,7 +11,7 @@ from vibro_sweep.analysis.branches.branch_arrays import special_point
 from vibro_sweep.analysis.branches.branch_switching import switch
 from vibro_sweep.analysis.branches.seeds import Seed, seed_of
 from vibro_sweep.analysis.branches.special import SpecialPoint
-from vibro_sweep.analysis.continuation.starting_orbit import Start
+from vibro_sweep.analysis.continuation.starting_orbit import StartingOrbit
 from vibro_sweep.analysis.curves import curve_arrays as curves
 from vibro_sweep.analysis.curves.curve_arrays import point_of_codimension_two
 from vibro_sweep.analysis.curves.curve_record import CurvePoint
@@ -91,7 +91,7 @@ def seeds_of(scene: Continuation, file: Pieces, pool: Executor | None) -> list[S
     if not orbits:
         of = f" of {scene.begin}" if scene.origin in ("sweep", "branches") else ""
         raise NoOrbitError(f"continue.from.{scene.origin}: no orbit{of} with {key} in {lo:g} .. {hi:g}")
-    return [seed_of(orbit.system, Start("orbit", orbit._solution)) for orbit in orbits]
+    return [seed_of(orbit.system, StartingOrbit("orbit", orbit._solution)) for orbit in orbits]
 
 
 def _orbits(scene: Continuation, key: str) -> list[PeriodicOrbit]:

@@ -10,7 +10,7 @@ from vibro_sweep.engine.tables import cells
 from vibro_sweep.engine.tables.flight import WIDTH
 from vibro_sweep.model.confinement import confinement_of
 from vibro_sweep.model.contact import (
-    Contact,
+    ContactCoordinates,
     by_mass,
     contact_coordinates,
     coordinates,
@@ -122,12 +122,12 @@ def _points(q: Linear, kind: Kind, frames: bool) -> np.ndarray:
     for name, values in confinement_of(q, contact)._asdict().items():
         points["confining" if name == "form" else name] = values
     for i in np.flatnonzero(points["apart"]):
-        _set_apart(points[i], taken(q, i), Contact(*(one[i] for one in contact)))
+        _set_apart(points[i], taken(q, i), ContactCoordinates(*(one[i] for one in contact)))
     for i in np.flatnonzero(points["cells"] == cells.STIFF_CELLS):
-        _set_exponentials(points[i], Contact(*(one[i] for one in contact)))
+        _set_exponentials(points[i], ContactCoordinates(*(one[i] for one in contact)))
     there = np.flatnonzero(points["cells"] > 0)
     if frames and len(there):
-        some = Contact(*(one[there] for one in contact))
+        some = ContactCoordinates(*(one[there] for one in contact))
         frame = frame_of(natural_coordinates(taken(q, there), some), q.omega[there])
         points["rounding"][there] = frame.rounding
         points["frame_eta"][there], points["frame_square"][there] = frame.eta, frame.square
@@ -136,7 +136,7 @@ def _points(q: Linear, kind: Kind, frames: bool) -> np.ndarray:
     return points
 
 
-def _set_apart(point: np.void, q: Linear, contact: Contact) -> None:
+def _set_apart(point: np.void, q: Linear, contact: ContactCoordinates) -> None:
     """The motion of an oscillator whose rates lie apart, in twice the digits."""
     n = len(q.normal)
     rounded, point["low"] = exact_motion(q, contact)
@@ -144,7 +144,7 @@ def _set_apart(point: np.void, q: Linear, contact: Contact) -> None:
     point["force"] = rounded[:, 2 * n :]
 
 
-def _set_exponentials(point: np.void, contact: Contact) -> None:
+def _set_exponentials(point: np.void, contact: ContactCoordinates) -> None:
     """The gap of a stiff oscillator as a sum of exponentials."""
     fast = WIDTH * point["omega"] * cells.STIFF_CELLS / (2 * np.pi)
     sums = gap_exponentials(contact, point["omega"], point["tau"], fast)

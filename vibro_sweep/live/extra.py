@@ -3,13 +3,9 @@
 import contextlib
 from collections.abc import Iterator
 
-from vibro_sweep.checks.errors import VibroSweepError
+from vibro_sweep.checks.errors import MissingPackageError
 
 PACKAGES = ("starlette", "uvicorn", "websockets")
-
-
-class MissingPackageError(VibroSweepError, ImportError):
-    """A package of the extra `explore` is not installed."""
 
 
 @contextlib.contextmanager

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.model.contact import Contact, rest_force
+from vibro_sweep.model.contact import ContactCoordinates, rest_force
 from vibro_sweep.model.linear import Linear
 from vibro_sweep.model.stacks import dot, modulus, only, solved, times, transposed
 from vibro_sweep.model.steady import steady_amplitudes
@@ -21,7 +21,7 @@ class Confinement(NamedTuple):
     form: np.ndarray  # (..., 2 N, 2 N): d^T form d bounds the square of what a distance d can do to the gap
 
 
-def confinement_of(q: Linear, contact: Contact) -> Confinement:
+def confinement_of(q: Linear, contact: ContactCoordinates) -> Confinement:
     """Of each oscillator of a stack."""
     n = q.normal.shape[-1]
     stiffness = np.linalg.eigvalsh(q.K)

@@ -33,7 +33,7 @@ class Natural(NamedTuple):
     of_masses: np.ndarray  # (..., N, N): L^-1 of M = L L^T; the unit matrix where M is diagonal and w = x
 
 
-class Contact(NamedTuple):
+class ContactCoordinates(NamedTuple):
     """q'' + damping q' + stiffness q = force (sin, cos, 1), of each oscillator of a stack."""
 
     P: np.ndarray  # (..., N, N)
@@ -51,7 +51,7 @@ class Contact(NamedTuple):
         return (self.P != np.eye(self.P.shape[-1])).any((-2, -1)) | self.origin.any(-1)
 
 
-def contact_coordinates(q: Linear) -> Contact:
+def contact_coordinates(q: Linear) -> ContactCoordinates:
     """The oscillators in contact coordinates."""
     n, origin = q.normal.shape[-1], origin_of(q)
     P, back = coordinates(q.normal, least_restrained(q))
@@ -63,7 +63,7 @@ def contact_coordinates(q: Linear) -> Contact:
         free = np.concatenate([-q.K @ back, -q.C @ back, forces], -1)
         constrained[..., 1:, :] = by_mass(others @ q.M @ transposed(others), others @ free)
         force = P @ by_mass(q.M, forces)
-    return Contact(P, back, origin, push, stiffness, damping, force, constrained)
+    return ContactCoordinates(P, back, origin, push, stiffness, damping, force, constrained)
 
 
 def is_own(q: Linear) -> np.ndarray:
@@ -165,7 +165,7 @@ def exact_sum(a, b) -> float:
     return float(sum(Fraction(float(x)) * Fraction(float(y)) for x, y in zip(a, b, strict=True)))
 
 
-def natural_coordinates(q: Linear, contact: Contact) -> Natural:
+def natural_coordinates(q: Linear, contact: ContactCoordinates) -> Natural:
     """The coordinates of the masses where M is diagonal; else w = L^T x, with M = L L^T."""
     simple, eye = is_diagonal(q.M), np.eye(q.M.shape[-1])
     one, many = simple[..., None], simple[..., None, None]

@@ -9,11 +9,11 @@ from fractions import Fraction
 
 import numpy as np
 
-from vibro_sweep.model.contact import Contact, least_restrained
+from vibro_sweep.model.contact import ContactCoordinates, least_restrained
 from vibro_sweep.model.linear import Linear
 
 
-def exact_motion(q: Linear, contact: Contact) -> tuple[np.ndarray, np.ndarray]:
+def exact_motion(q: Linear, contact: ContactCoordinates) -> tuple[np.ndarray, np.ndarray]:
     """(N, 2 N + 3) q'' as a function of (q, q', sin, cos, 1): rounded, and what that leaves."""
     n, spare = len(q.normal), least_restrained(q)
     M, K, C, along, origin = (_fractions(one) for one in (q.M, q.K, q.C, q.normal, contact.origin))

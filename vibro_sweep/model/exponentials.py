@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.model.contact import Contact, flight_matrix
+from vibro_sweep.model.contact import ContactCoordinates, flight_matrix
 
 
 class Exponentials(NamedTuple):
@@ -20,7 +20,7 @@ class Exponentials(NamedTuple):
     valid: bool  # False: A has too few eigenvectors
 
 
-def gap_exponentials(contact: Contact, omega: float, tau: float, fast: float) -> Exponentials:
+def gap_exponentials(contact: ContactCoordinates, omega: float, tau: float, fast: float) -> Exponentials:
     """fast: modulus from which on a root is fast."""
     n = len(contact.stiffness)
     states = 2 * n

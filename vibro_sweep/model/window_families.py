@@ -7,7 +7,7 @@ from typing import NamedTuple
 LEAST = 3  # windows of a family
 
 
-class Family(NamedTuple):
+class WindowFamily(NamedTuple):
     """itinerary and symmetry that its windows share; their indices by rising period, the least period, the step.
 
     Examples
@@ -30,7 +30,7 @@ class Family(NamedTuple):
     step: int
 
 
-def families(itineraries: list[str], symmetric: list[bool], periods: list[int], lo: list[float]) -> list[Family]:
+def families(itineraries: list[str], symmetric: list[bool], periods: list[int], lo: list[float]) -> list[WindowFamily]:
     """The families among windows, by falling size: runs of one step in the period, along which `lo` rises or falls.
 
     Of windows with the same itinerary and period the first counts.
@@ -44,7 +44,7 @@ def families(itineraries: list[str], symmetric: list[bool], periods: list[int], 
         for run in _runs([(period, lo[w], w) for period, w in sorted(by_period.items())]):
             if len(run) >= LEAST:
                 step = run[1][0] - run[0][0]
-                found.append(Family(word, kind, tuple(w for _, _, w in run), run[0][0], step))
+                found.append(WindowFamily(word, kind, tuple(w for _, _, w in run), run[0][0], step))
     return sorted(found, key=lambda family: (-len(family.windows), family.period))
 
 

@@ -21,7 +21,7 @@ from vibro_sweep.live.served_page import LivePage
 from vibro_sweep.model.grazing import Grazing
 from vibro_sweep.model.linear import Family, Linear
 from vibro_sweep.model.modes import Modes
-from vibro_sweep.model.window_families import Family as WindowFamily
+from vibro_sweep.model.window_families import WindowFamily
 from vibro_sweep.scene import Continuation, Scene, Section, Start, Trajectory
 from vibro_sweep.tables.picture_kinds import Plottable
 from vibro_sweep.tables.units import Units

@@ -11,7 +11,7 @@ from vibro_sweep.analysis.branches.recognising import clearest, passes, point_of
 from vibro_sweep.analysis.branches.search import Node, Search, Task
 from vibro_sweep.analysis.branches.seeds import Seed, packed, seed_of
 from vibro_sweep.analysis.branches.special import SpecialPoint
-from vibro_sweep.analysis.continuation.starting_orbit import Start
+from vibro_sweep.analysis.continuation.starting_orbit import StartingOrbit
 from vibro_sweep.analysis.periodic.one_thread import one_thread
 
 LEAST = 1e-4  # distance of a graze from the onset of sticking, as a part of the range, to which branches are followed
@@ -45,7 +45,9 @@ def beyond(branch: Branch, task: Task) -> list[Seed]:
     (lo, hi), found = task.bounds[0], []
     for index, special in enumerate(branch.special):
         if special.type in task.of and not accumulates(branch, special, LEAST * (hi - lo)):
-            seeds = [seed_of(orbit.system, Start("orbit", orbit._solution), (), index) for orbit in switch(special)]
+            seeds = [
+                seed_of(orbit.system, StartingOrbit("orbit", orbit._solution), (), index) for orbit in switch(special)
+            ]
             found += [seed for seed in seeds if lo <= seed.place(task.names)[0] <= hi]
     return found
 
@@ -68,4 +70,4 @@ class Branches(Search):
         """Also where the seed could not decide that, which lies next to a birth or a fold."""
         i = clearest(arrays)
         system = seed.system.replace(**{self.names[0]: float(arrays["value"][i])})
-        return self.lies_on(known, seed_of(system, Start("orbit", point_of(arrays, i, system))))
+        return self.lies_on(known, seed_of(system, StartingOrbit("orbit", point_of(arrays, i, system))))

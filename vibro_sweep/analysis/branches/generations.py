@@ -9,7 +9,7 @@ from vibro_sweep.analysis.branches.branch_search import Branches, beyond, follow
 from vibro_sweep.analysis.branches.search import Task
 from vibro_sweep.analysis.branches.seeds import packed, seed_of
 from vibro_sweep.analysis.branches.special import SpecialPoint
-from vibro_sweep.analysis.continuation.starting_orbit import Start
+from vibro_sweep.analysis.continuation.starting_orbit import StartingOrbit
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.checks.arguments import check_call, check_type, checked_count, names_its_arguments
 from vibro_sweep.checks.errors import ArgumentError
@@ -90,7 +90,7 @@ def follow_branches(
 
     lo, hi = map(float, bounds)
     branching = Branches((parameter,), ((lo, hi),), tuple(follow), at_once=1)
-    nodes = branching.run([seed_of(orbit.system, Start("orbit", orbit._solution))], depth, evaluate)
+    nodes = branching.run([seed_of(orbit.system, StartingOrbit("orbit", orbit._solution))], depth, evaluate)
     found: list[FollowedBranch] = []
     for node in nodes:
         parent, special = node.seed.parent, None

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from vibro_sweep.analysis.branches.branch_arrays import Arrays
-from vibro_sweep.analysis.continuation.starting_orbit import KINDS, Start
+from vibro_sweep.analysis.continuation.starting_orbit import KINDS, StartingOrbit
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit, orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.model.linear import family_of
@@ -36,8 +36,8 @@ class Seed(NamedTuple):
     special: int = -1
 
     @property
-    def start(self) -> Start:
-        return Start(self.type, self.solution, self.index, self.theta)
+    def start(self) -> StartingOrbit:
+        return StartingOrbit(self.type, self.solution, self.index, self.theta)
 
     @property
     def solution(self) -> Solution:
@@ -55,7 +55,7 @@ class Seed(NamedTuple):
         return np.array([numbers[name] for name in names], float)
 
 
-def seed_of(system, start: Start, parameters=(), special: int = -1) -> Seed:
+def seed_of(system, start: StartingOrbit, parameters=(), special: int = -1) -> Seed:
     s = start.solution
     ends = np.full(s.K, np.nan)
     ends[list(s.rests)] = s.ends

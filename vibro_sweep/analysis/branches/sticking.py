@@ -12,7 +12,7 @@ from vibro_sweep.analysis.branches.special import SpecialPoint, inserted
 from vibro_sweep.analysis.continuation.chatter import Chatter, chatter_at, written_out
 from vibro_sweep.analysis.continuation.first_point import converge, guess_of
 from vibro_sweep.analysis.continuation.solution_curve import NoPlaneError, SolutionCurve
-from vibro_sweep.analysis.continuation.starting_orbit import Start
+from vibro_sweep.analysis.continuation.starting_orbit import StartingOrbit
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.checks.arguments import check_type, names_its_arguments
@@ -85,7 +85,9 @@ def _onset(guess: Chatter, name: str) -> tuple[SolutionCurve, Place] | None:
     s = guess.solution
     value, size = s.family.numbers[name], least_size(s, name) / LEAST
     try:
-        curve = SolutionCurve(Start("sticking", s, state=guess.state), (name,), [(value - size / 2, value + size / 2)])
+        curve = SolutionCurve(
+            StartingOrbit("sticking", s, state=guess.state), (name,), [(value - size / 2, value + size / 2)]
+        )
     except NoPlaneError:
         return None
     first = guess_of(curve)

@@ -5,7 +5,7 @@ from functools import cache, lru_cache
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from vibro_sweep.analysis.periodic.contact_numbers import Units, numbers_of
+from vibro_sweep.analysis.periodic.contact_numbers import EventUnits, numbers_of
 from vibro_sweep.engine.continuation import moving_flow
 from vibro_sweep.engine.impulses.extended import extended, identity
 from vibro_sweep.engine.impulses.extremes import middle_weights
@@ -22,7 +22,7 @@ KEPT = 64  # oscillators
 ASIDE = 0.37  # of the reach: where degrees are read off, so that products of both parameters are seen
 
 
-def sampled(q: Linear, units: Units) -> np.ndarray:
+def sampled(q: Linear, units: EventUnits) -> np.ndarray:
     """The numbers of `plane_of`.values, in these units."""
     B, (length, rate) = rates(q), units
     n = len(B) - 3
@@ -37,7 +37,7 @@ class Oscillators:
     """The oscillators of a family along up to two of its parameters, over so many half periods. Raises
     TooStiffError."""
 
-    def __init__(self, family: Family, names: tuple[str, ...], half_periods: int, units: Units):
+    def __init__(self, family: Family, names: tuple[str, ...], half_periods: int, units: EventUnits):
         checked_cells(family.linear, half_periods)
         self.family, self.names, self.half_periods, self.units = family, names, half_periods, units
         self.slopes = [family.derivative(name) for name in names]

@@ -7,8 +7,8 @@ import numpy as np
 
 from vibro_sweep.analysis.continuation.oscillators import Oscillators
 from vibro_sweep.analysis.continuation.point import Point
-from vibro_sweep.analysis.continuation.starting_orbit import Start, keeps_symmetry
-from vibro_sweep.analysis.periodic.contact_numbers import Units, compliant_stops, one_plus_R
+from vibro_sweep.analysis.continuation.starting_orbit import StartingOrbit, keeps_symmetry
+from vibro_sweep.analysis.periodic.contact_numbers import EventUnits, compliant_stops, one_plus_R
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.checks.errors import VibroSweepError
 from vibro_sweep.engine.continuation import path, stepper
@@ -32,7 +32,7 @@ class NoPlaneError(VibroSweepError, ValueError):
 class SolutionCurve:
     """A branch in one parameter, a curve of one kind in two, or a single point, through `start`."""
 
-    def __init__(self, start: Start, names: tuple[str, ...], bounds, unit=None, step: float = 1.0):
+    def __init__(self, start: StartingOrbit, names: tuple[str, ...], bounds, unit=None, step: float = 1.0):
         """bounds : ends of each parameter; unit: of distances in each, by default the length of its side; step: of the
         lengths of all steps, a factor"""
         self.start, self.orbit, self.names, self.step_factor = start, start.solution, names, step
@@ -40,7 +40,7 @@ class SolutionCurve:
         self.unit = np.append(np.ptp(bounds, axis=1) if unit is None else unit, [1.0] * (2 - len(names)))
         s = self.orbit
         q = s.family.linear
-        self.units = Units(float(s.size_of_gap), float(q.omega))
+        self.units = EventUnits(float(s.size_of_gap), float(q.omega))
         self.tau = float(q.tau)  # by which phases become times: those of the curve do not move with it
         self._taus = [(s.family.numbers[names[0]], self.tau)]
         self.oscillators = Oscillators(s.family, names, s.half_periods, self.units)
@@ -312,7 +312,7 @@ def branch_through(
     solution: Solution, name: str, unit: float, bounds=(-np.inf, np.inf), step: float = 1.0
 ) -> SolutionCurve:
     """The branch of an orbit in one parameter. Raises NoPlaneError, TooStiffError."""
-    return SolutionCurve(Start("orbit", solution), (name,), [bounds], [unit], step)
+    return SolutionCurve(StartingOrbit("orbit", solution), (name,), [bounds], [unit], step)
 
 
 def copy(source: Place, target: Place) -> None:

@@ -14,7 +14,7 @@ KINDS = {one.name: CONDITIONS[one.condition] for one in TYPES if one.condition}
 
 
 @dataclass(frozen=True)
-class Start:
+class StartingOrbit:
     """An orbit, perhaps at a bifurcation; index: of the impact that grazes; state: of an onset of sticking."""
 
     type: str

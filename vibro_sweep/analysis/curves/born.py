@@ -31,7 +31,7 @@ from vibro_sweep.analysis.branches.special import SpecialPoint, bare, inserted
 from vibro_sweep.analysis.continuation.first_point import converge, first_place, guess_of
 from vibro_sweep.analysis.continuation.point import Point
 from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve, branch_through
-from vibro_sweep.analysis.continuation.starting_orbit import Start
+from vibro_sweep.analysis.continuation.starting_orbit import StartingOrbit
 from vibro_sweep.analysis.curves.curve_record import CurvePoint
 from vibro_sweep.analysis.curves.curve_start import as_special
 from vibro_sweep.analysis.curves.pair import in_phase, in_time, rates_of_pair, second_order
@@ -55,7 +55,7 @@ class Entry(NamedTuple):
     times; how far the parameters have moved, by the normal form (None: not known).
     """
 
-    start: Start
+    start: StartingOrbit
     change: np.ndarray
     moved: np.ndarray | None
 
@@ -67,8 +67,8 @@ def born(special: CurvePoint) -> list[SpecialPoint]:
         return []
     if "graze" in BEGINS[special.type] and not special.touches:
         solution = bare(solution, int(np.argmin(np.abs(solution.jumps))))
-    flip = Start(name_of("flip", solution.sigma), solution)
-    quarter = Start("neimark_sacker", solution, theta=np.pi / 2)
+    flip = StartingOrbit(name_of("flip", solution.sigma), solution)
+    quarter = StartingOrbit("neimark_sacker", solution, theta=np.pi / 2)
     found = []
     for i, condition in enumerate(BEGINS[special.type]):
         name, sign = name_of(condition, 1), -1 if condition in BEGINS[special.type][:i] else 1  # which of two folds
@@ -91,7 +91,9 @@ def _leads_to(special: CurvePoint, one: SpecialPoint, nearer: SpecialPoint, rati
     return bool(np.linalg.norm((far - values - ratio * (near - values)) / size) < np.linalg.norm((far - values) / size))
 
 
-def entry(special: CurvePoint, name: str, parent: Start, count: int, amplitude: float, sign: int) -> Entry | None:
+def entry(
+    special: CurvePoint, name: str, parent: StartingOrbit, count: int, amplitude: float, sign: int
+) -> Entry | None:
     """The guess for orbits with `count` times the period at this amplitude; sign: which of two folds. None: none
     exist."""
     names, values = tuple(special.parameters), np.array(list(special.parameters.values()))
@@ -109,22 +111,22 @@ def entry(special: CurvePoint, name: str, parent: Start, count: int, amplitude: 
         child, change = repeated(parent.solution, 4, factor * w, 1j)
         family = parent.solution.family.replace(**dict(zip(names, map(float, values + moved), strict=True)))
         child = replace(_bent(child, curve, place, factor, moved), family=family)
-        return Entry(Start(name, child, theta=theta), change, moved)
+        return Entry(StartingOrbit(name, child, theta=theta), change, moved)
     child, change = repeated(parent.solution, 2, factor * w, -1.0)
     if name == "graze":  # at the turning point that is nearest to its stop
         touching, index = inserted(child)
         places = [index, child.K + index, *(2 * child.K + touching.rests.index(i) for i in {index} & {*touching.rests})]
-        return Entry(Start(name, touching, index), np.insert(change, places, 0.0), None)
+        return Entry(StartingOrbit(name, touching, index), np.insert(change, places, 0.0), None)
     if special.type == "flip_neimark_sacker":
         mu = parent.solution.multipliers
         pair = mu[np.argmin(np.where(mu.imag > 1e-6, np.abs(np.abs(mu) - 1), np.inf))]
-        return Entry(Start(name, child, theta=abs(float(np.angle(pair**2)))), change, None)
+        return Entry(StartingOrbit(name, child, theta=abs(float(np.angle(pair**2)))), change, None)
     if name == "fold":
         found = _turning(curve, place, change, amplitude)
-        return found and Entry(Start(name, found), change, None)
+        return found and Entry(StartingOrbit(name, found), change, None)
     found = _doubled(curve, place, change)
     theta = found and _angle_near_one(found)
-    return Entry(Start(name, found, theta=theta), change, None) if theta else None
+    return Entry(StartingOrbit(name, found, theta=theta), change, None) if theta else None
 
 
 def _doubled(curve: SolutionCurve, place: Point, change: np.ndarray, distance: float = 0.0) -> Solution | None:

@@ -12,7 +12,7 @@ from vibro_sweep.analysis.branches.branch_orbits import Arrays, solution_of
 from vibro_sweep.analysis.branches.branch_run import stop_and_impact
 from vibro_sweep.analysis.branches.criticality import critical_angle
 from vibro_sweep.analysis.branches.special import bare
-from vibro_sweep.analysis.continuation.starting_orbit import Start
+from vibro_sweep.analysis.continuation.starting_orbit import StartingOrbit
 from vibro_sweep.analysis.curves.bifurcation_curve import BifurcationCurve
 from vibro_sweep.analysis.curves.curve_record import CurvePoint
 from vibro_sweep.analysis.curves.curve_start import slow_impacts
@@ -88,11 +88,11 @@ def solution_at(arrays: Arrays, point: int, system) -> Solution:
     return solution_of(arrays, system, *(arrays[name][point] for name in ("impact_t", "impact_v", "impact_t_off")))
 
 
-def start_from(arrays: Arrays, point: int, system) -> Start:
+def start_from(arrays: Arrays, point: int, system) -> StartingOrbit:
     """The bifurcation at a point of a curve, to follow it again from there."""
     solution = solution_at(arrays, point, system)
     theta = critical_angle(solution) if type_of(arrays) == "neimark_sacker" else 0.0
-    return Start(type_of(arrays), solution, max(int(arrays["branch_grazing"]), 0), theta)
+    return StartingOrbit(type_of(arrays), solution, max(int(arrays["branch_grazing"]), 0), theta)
 
 
 def curve_of(arrays: Arrays, names: tuple[str, str], system) -> BifurcationCurve:

@@ -8,7 +8,7 @@ from vibro_sweep.analysis.continuation.events import Event, LocatedEvent
 from vibro_sweep.analysis.continuation.first_point import first_place
 from vibro_sweep.analysis.continuation.secant import error_of, root
 from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve
-from vibro_sweep.analysis.continuation.starting_orbit import CONDITIONS, Start
+from vibro_sweep.analysis.continuation.starting_orbit import CONDITIONS, StartingOrbit
 from vibro_sweep.analysis.curves.crossed import aside, crossed, is_lost, is_on_other
 from vibro_sweep.analysis.periodic.contact_numbers import has_corner, is_smooth
 from vibro_sweep.engine.continuation.curve_tests import TOUCHING
@@ -246,7 +246,7 @@ def on_grazes(curve: SolutionCurve, impact: int, aim: Place, lengths) -> Located
     aim = curve.copied(aim)
     aim.jumps[impact] = 0.0
     types = [kind for kind in (type_at(curve, TOUCHES), type_at(curve, VANISHES)) if kind]
-    other = SolutionCurve(Start("graze", curve.solution(aim), index=impact), curve.names, curve.bounds)
+    other = SolutionCurve(StartingOrbit("graze", curve.solution(aim), index=impact), curve.names, curve.bounds)
     first = first_place(other)
     for length in lengths if first is not None else ():
         found = event_near(other, first, length, types)

@@ -6,7 +6,7 @@ from vibro_sweep.analysis.branches.branch_run import stop_and_impact
 from vibro_sweep.analysis.branches.branch_switching import index_in
 from vibro_sweep.analysis.branches.criticality import critical_angle
 from vibro_sweep.analysis.branches.special import SpecialPoint, bare, inserted, vanishing
-from vibro_sweep.analysis.continuation.starting_orbit import KINDS, Start, keeps_symmetry
+from vibro_sweep.analysis.continuation.starting_orbit import KINDS, StartingOrbit, keeps_symmetry
 from vibro_sweep.analysis.periodic.periodic_orbit import orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.checks.errors import ArgumentError
@@ -15,7 +15,7 @@ from vibro_sweep.tables.bifurcations import BIRTHS
 SLOW = 1e-9  # impulse, in parts of the gap's size times omega, below which an impact is a graze
 
 
-def start_at(special: SpecialPoint, names: tuple[str, ...] = ()) -> Start:
+def start_at(special: SpecialPoint, names: tuple[str, ...] = ()) -> StartingOrbit:
     """The start of a curve in the parameters `names`, in whole periods where one of them breaks the orbit's symmetry.
 
     A pitchfork is then a fold, and its point a cusp. Raises ValueError for a type without curves, and for orbits that
@@ -32,10 +32,10 @@ def start_at(special: SpecialPoint, names: tuple[str, ...] = ()) -> Start:
             "orbit have an onset of their own"
         )
     name = "fold" if start.type in BIRTHS else start.type
-    return Start(name, start.solution.whole(), start.index, start.theta)
+    return StartingOrbit(name, start.solution.whole(), start.index, start.theta)
 
 
-def as_special(start: Start, names, system, error: float = np.nan) -> SpecialPoint:
+def as_special(start: StartingOrbit, names, system, error: float = np.nan) -> SpecialPoint:
     """A start as a special point in these parameters, from which `bifurcation_curve` begins.
 
     Its multipliers are not known where an impact has no speed, but for the one that grazes.
@@ -72,18 +72,18 @@ def _solution(special: SpecialPoint) -> Solution:
     return solution
 
 
-def _start(special: SpecialPoint, solution: Solution, symmetric: bool) -> Start:
+def _start(special: SpecialPoint, solution: Solution, symmetric: bool) -> StartingOrbit:
     if special.type == "sticking":
-        return Start("sticking", solution, state=special._chatter.state)
+        return StartingOrbit("sticking", solution, state=special._chatter.state)
     if special.type == "graze":
         if special.impact is not None:
             return _grazing(solution, index_in(special), symmetric)
-        return Start("graze", *inserted(solution))
+        return StartingOrbit("graze", *inserted(solution))
     theta = critical_angle(solution) if special.type == "neimark_sacker" else 0.0
-    return Start(special.type, solution, theta=theta)
+    return StartingOrbit(special.type, solution, theta=theta)
 
 
-def _grazing(solution: Solution, index: int, symmetric: bool) -> Start:
+def _grazing(solution: Solution, index: int, symmetric: bool) -> StartingOrbit:
     """The start where impacts vanish together as one graze of a simpler orbit (or the free motion), in its periods:
     that one alone. The others have no speed all along the curve.
 
@@ -95,5 +95,5 @@ def _grazing(solution: Solution, index: int, symmetric: bool) -> Start:
     if not symmetric and simpler.sigma == -1:
         simpler = simpler.whole()
     if len(gone) > 1 and simpler.half_periods < solution.half_periods:
-        return Start("graze", *inserted(simpler))
-    return Start("graze", solution, index)
+        return StartingOrbit("graze", *inserted(simpler))
+    return StartingOrbit("graze", solution, index)

@@ -11,7 +11,7 @@ from vibro_sweep.analysis.branches.special import SpecialPoint, bare, inserted
 from vibro_sweep.analysis.continuation.chatter import Chatter
 from vibro_sweep.analysis.continuation.first_point import first_place
 from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve
-from vibro_sweep.analysis.continuation.starting_orbit import Start
+from vibro_sweep.analysis.continuation.starting_orbit import StartingOrbit
 from vibro_sweep.analysis.curves.born import born, box_around
 from vibro_sweep.analysis.curves.curve_record import CurvePoint
 from vibro_sweep.analysis.curves.curve_start import as_special, slow_impacts
@@ -70,7 +70,7 @@ def switch(special):
     return found + born(special)
 
 
-def _starts(special: CurvePoint) -> list[Start]:
+def _starts(special: CurvePoint) -> list[StartingOrbit]:
     """Each bifurcation of each orbit that has this motion: with and without the impacts that have no speed."""
     if special._chatter is not None:
         return _sticking(special._chatter)
@@ -83,30 +83,30 @@ def _starts(special: CurvePoint) -> list[Start]:
         for dropped in combinations(slow, count):
             solution = bare(whole, dropped)
             kept = [k - sum(other < k for other in dropped) for k in slow if k not in dropped]
-            starts += [Start("graze", solution, k) for k in kept]
+            starts += [StartingOrbit("graze", solution, k) for k in kept]
             if solution.K:
                 starts += _smooth(solution, bool(kept) or special.type in STRONG)
     return starts
 
 
-def _sticking(chatter: Chatter) -> list[Start]:
+def _sticking(chatter: Chatter) -> list[StartingOrbit]:
     """The onset of the orbits with and without the impact that has no speed."""
     s = chatter.solution
     _, k = slow_impacts(s)  # the first is the end of the chatter
-    return [Start("sticking", solution, state=chatter.state) for solution in (s, bare(s, k))]
+    return [StartingOrbit("sticking", solution, state=chatter.state) for solution in (s, bare(s, k))]
 
 
-def _smooth(solution: Solution, no_pair: bool) -> list[Start]:
+def _smooth(solution: Solution, no_pair: bool) -> list[StartingOrbit]:
     """Fold, flip and Neimark-Sacker of an orbit; no_pair: not the last, as where rounding makes a pair of a double
     multiplier 1 (-1)."""
     found = []
     for mu, name in ((1, "fold"), (-1, name_of("flip", solution.sigma))):
         if name and is_singular(solution, mu):
-            found.append(Start(name, solution))
+            found.append(StartingOrbit(name, solution))
     if not no_pair:
         values = solution.multipliers
         pair = values[(values.imag > 1e-6) & (np.abs(np.abs(values) - 1) < ON_CIRCLE)]
-        found += [Start("neimark_sacker", solution, theta=float(np.angle(mu))) for mu in pair]
+        found += [StartingOrbit("neimark_sacker", solution, theta=float(np.angle(mu))) for mu in pair]
     return found
 
 
@@ -119,7 +119,7 @@ def is_singular(solution: Solution, mu: int) -> bool:
     return bool(values[-1] < SINGULAR * values[0])
 
 
-def _special(special: CurvePoint, start: Start) -> SpecialPoint:
+def _special(special: CurvePoint, start: StartingOrbit) -> SpecialPoint:
     if start.state is None:
         return as_special(start, special.parameters, special.orbit.system, special.error)
     chatter, none = Chatter(start.solution, start.state), np.empty(0, complex)
@@ -133,8 +133,10 @@ def _beside_strong(special: CurvePoint) -> SpecialPoint | None:
     solution = special.orbit._solution
     names = tuple(special.parameters)
     theta = BESIDE if special.type == "resonance_1_1" else math.pi - BESIDE
-    curve = SolutionCurve(Start("neimark_sacker", solution, theta=theta), names, box_around(special))
+    curve = SolutionCurve(StartingOrbit("neimark_sacker", solution, theta=theta), names, box_around(special))
     place = first_place(curve, curve.axis(THETA))
     if place is None:
         return None
-    return as_special(Start("neimark_sacker", curve.solution(place)), names, special.orbit.system, special.error)
+    return as_special(
+        StartingOrbit("neimark_sacker", curve.solution(place)), names, special.orbit.system, special.error
+    )

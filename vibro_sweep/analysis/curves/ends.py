@@ -17,7 +17,7 @@ from vibro_sweep.analysis.branches.special import bare, inserted
 from vibro_sweep.analysis.continuation.events import LocatedEvent
 from vibro_sweep.analysis.continuation.first_point import first_place
 from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve
-from vibro_sweep.analysis.continuation.starting_orbit import CONDITIONS, Start
+from vibro_sweep.analysis.continuation.starting_orbit import CONDITIONS, StartingOrbit
 from vibro_sweep.analysis.curves.curve_events import event_near
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation.problem import FOLD, GRAZE, TORUS
@@ -66,7 +66,7 @@ def strong_resonance(curve: SolutionCurve, a: Place, b: Place) -> End | None:
     aim = curve.between(b, a, -(left**2) / (before**2 - left**2))
     moved = curve.difference(a, b)
     lengths = (np.linalg.norm(moved[:-1]), np.linalg.norm(moved))  # the other curve has no angle
-    end = _on_other(curve, Start(of_type, curve.solution(aim)), aim, lengths, (name,))
+    end = _on_other(curve, StartingOrbit(of_type, curve.solution(aim)), aim, lengths, (name,))
     if end is None or _is_repeated(end):
         return None
     size = np.ptp(curve.bounds, axis=1)
@@ -156,10 +156,10 @@ def _first_found(curve: SolutionCurve, aim: Place, sigma: int, lengths) -> End |
         mirrored = solution.sides[solution.K // 4] == -solution.sides[0]
         quarter = solution.part(4, -1 if mirrored else 1, alike=0.1, exact=False)
         if quarter is not None:
-            starts.append((Start("neimark_sacker", quarter, theta=math.pi / 2), ("resonance_1_4",)))
+            starts.append((StartingOrbit("neimark_sacker", quarter, theta=math.pi / 2), ("resonance_1_4",)))
     parent = solution.part(2, sigma, alike=0.1, exact=False)
     if parent is not None and name_of("flip", sigma):
-        starts.append((Start(name_of("flip", sigma), parent), ENDS[kind]))
+        starts.append((StartingOrbit(name_of("flip", sigma), parent), ENDS[kind]))
     for start, types in starts:
         found = _on_other(curve, start, aim, lengths, types)
         if found is not None:
@@ -167,7 +167,7 @@ def _first_found(curve: SolutionCurve, aim: Place, sigma: int, lengths) -> End |
     return None
 
 
-def _on_other(curve: SolutionCurve, start: Start, aim: Place, lengths, types) -> End | None:
+def _on_other(curve: SolutionCurve, start: StartingOrbit, aim: Place, lengths, types) -> End | None:
     """The event on the curve from `start` that is nearest to its first point, which is near `aim`."""
     other = SolutionCurve(start, curve.names, curve.bounds)
     first = first_place(other)

@@ -13,7 +13,7 @@ from vibro_sweep.analysis.branches.special import bare, inserted
 from vibro_sweep.analysis.continuation.first_point import first_place
 from vibro_sweep.analysis.continuation.point import Point
 from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve
-from vibro_sweep.analysis.continuation.starting_orbit import Start
+from vibro_sweep.analysis.continuation.starting_orbit import StartingOrbit
 from vibro_sweep.analysis.periodic.solution import Solution
 
 PRELOADS = ("preload", "preload_left")
@@ -32,7 +32,7 @@ def without_preload(curve: SolutionCurve, solution: Solution, p: np.ndarray) -> 
     if orbit is None:
         return None
     touching, index = inserted(orbit)
-    graze = SolutionCurve(Start("graze", touching, index), curve.names, curve.bounds)
+    graze = SolutionCurve(StartingOrbit("graze", touching, index), curve.names, curve.bounds)
     found = first_place(graze, graze.axis(axes[0]))
     near = found is not None and np.all(np.abs(found.p - p)[:2] <= NEAR * np.ptp(curve.bounds, axis=1))
     return found if near else None

@@ -11,8 +11,8 @@ from vibro_sweep.engine.impulses.flow import contact_coordinates
 from vibro_sweep.model.linear import STEP, Linear, forcing_period
 
 
-class Units(NamedTuple):
-    """Units in which kernels compute, so that all numbers are of size 1."""
+class EventUnits(NamedTuple):
+    """EventUnits in which kernels compute, so that all numbers are of size 1."""
 
     length: float  # the gap's size
     rate: float  # omega of the start
@@ -23,7 +23,7 @@ class Units(NamedTuple):
         return self.length * self.rate
 
 
-def numbers_of(q: Linear, units: Units) -> list[float]:
+def numbers_of(q: Linear, units: EventUnits) -> list[float]:
     """Where a stop is compliant k_stop, c_stop, preload over m_e of the left and of the right one; then stops, 1 + R at
     each, and omega."""
     length, rate = units
@@ -36,7 +36,7 @@ def numbers_of(q: Linear, units: Units) -> list[float]:
     return [*laws, q.low / length, q.high / length, 1 + R_low, 1 + R_high, q.omega / rate]
 
 
-def number_slopes(q: Linear, slope: Linear, units: Units) -> np.ndarray:
+def number_slopes(q: Linear, slope: Linear, units: EventUnits) -> np.ndarray:
     """Derivatives of `numbers_of` where q changes by `slope`, and these units stay."""
     there = q._replace(**{name: 0.0 for name in ("low", "high") if np.isinf(getattr(q, name))})
     step = Linear(*(value + 1j * STEP * np.asarray(change) for value, change in zip(there, slope, strict=True)))
@@ -55,7 +55,7 @@ def compliant_stops(q: Linear) -> np.ndarray | None:
 
 def presses_too_long(q: Linear) -> bool:
     """Whether a contact with a stop that lasts for a forcing period takes more parts than are computed."""
-    laws = np.array(numbers_of(q, Units(1.0, 1.0))[:-NUMBERS]).reshape(-1, 3)
+    laws = np.array(numbers_of(q, EventUnits(1.0, 1.0))[:-NUMBERS]).reshape(-1, 3)
     rates = PER_TIME_CONSTANT * (np.sqrt(laws[:, 0]) + laws[:, 1])
     return bool(np.any(rates * forcing_period(q) > 1 << MOST_HALVINGS))
 

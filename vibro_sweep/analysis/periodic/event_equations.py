@@ -7,7 +7,7 @@ from functools import cache
 
 import numpy as np
 
-from vibro_sweep.analysis.periodic.contact_numbers import Units, compliant_stops, numbers_of
+from vibro_sweep.analysis.periodic.contact_numbers import EventUnits, compliant_stops, numbers_of
 from vibro_sweep.analysis.periodic.steady_gap import push_of_free_mode, steady_gap
 from vibro_sweep.engine.continuation import moving_flow, path, stepper
 from vibro_sweep.engine.continuation.moving_flow import HIGH, LOW, NUMBERS
@@ -33,7 +33,7 @@ class EventEquations:
         planes = _tables(q, sigma, half_periods, bool(rests), q.compliant)
         self.planes = planes.copy()  # kernels write the contact's numbers into it
         self.planes[0]["numbers"], self.planes[0]["by_force"] = _contact_of(q), q.by_force
-        self.planes[0]["exact"][self.n * (self.n + 2) :] = numbers_of(q, Units(1.0, q.omega))
+        self.planes[0]["exact"][self.n * (self.n + 2) :] = numbers_of(q, EventUnits(1.0, q.omega))
         resting, compliant = np.zeros(self.K, bool), compliant_stops(q)
         resting[list(rests)] = True
         self.problem = Problem(

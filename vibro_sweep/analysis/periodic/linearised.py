@@ -6,7 +6,7 @@ phase, of the phase, and of the jump.
 
 import numpy as np
 
-from vibro_sweep.analysis.periodic.contact_numbers import Units, number_slopes
+from vibro_sweep.analysis.periodic.contact_numbers import EventUnits, number_slopes
 from vibro_sweep.analysis.periodic.event_equations import EventEquations
 from vibro_sweep.engine.continuation import stepper
 from vibro_sweep.engine.continuation.problem import FLIP, FOLD, GRAZE
@@ -49,7 +49,7 @@ class Linearised:
             r["parameters"], r["degree"], r["moves"][0] = 1, [1, 0], bool(np.any(dA))
             r["fit"][1, 0, : n * (n + 1)] = dA.ravel()
             r["fit"][1, 0, n * (n + 1) : n * (n + 2)] = dB[n // 2 :, n : n + 2].T.ravel() / omega**2
-            r["fit"][1, 0, n * (n + 2) :] = number_slopes(self.q, slope, Units(1.0, omega))
+            r["fit"][1, 0, n * (n + 2) :] = number_slopes(self.q, slope, EventUnits(1.0, omega))
         self.equations.move()
 
     def _assembled(self):

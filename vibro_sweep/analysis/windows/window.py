@@ -17,7 +17,7 @@ from vibro_sweep.analysis.single.result import FileResult
 from vibro_sweep.analysis.windows import window_text
 from vibro_sweep.analysis.windows.unvisited import Unvisited, unvisited_in
 from vibro_sweep.analysis.windows.window_search import WindowSearch
-from vibro_sweep.model.window_families import Family, families
+from vibro_sweep.model.window_families import WindowFamily, families
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -125,7 +125,7 @@ class Windows(FileResult, list[Window]):
         return portrait(self[row].orbit)
 
     @property
-    def families(self) -> list[Family]:
+    def families(self) -> list[WindowFamily]:
         """Windows of one itinerary whose period grows by the same step: .windows are indices of this list."""
         rows = [(one.itinerary, one.symmetric, one.period, one.lo) for one in self]
         return families(*map(list, zip(*rows, strict=True))) if rows else []

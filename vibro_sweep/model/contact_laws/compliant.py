@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from vibro_sweep.model.contact_laws.contact_law import ContactLaw, Option
+from vibro_sweep.model.contact_laws.contact_law import Choice, ContactLaw
 from vibro_sweep.tables.quantity import NOT_NEGATIVE, Parameter, Range
 
 MODERATE = Range("a number from 0 to 1e100", {"minimum": 0, "maximum": 1e100})  # its square has to be a number
@@ -40,7 +40,7 @@ LAW = ContactLaw(
         for one in NUMBERS
     ),
     options=(
-        Option(
+        Choice(
             "release",
             "where a contact with a compliant stop ends: at zero displacement, or where its force is zero",
             ("displacement", "force"),

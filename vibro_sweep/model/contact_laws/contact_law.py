@@ -7,7 +7,7 @@ from typing import NamedTuple
 from vibro_sweep.tables.quantity import Parameter
 
 
-class Option(NamedTuple):
+class Choice(NamedTuple):
     """A word that says how all stops of this law behave; the first of its `words` is the default."""
 
     name: str
@@ -25,7 +25,7 @@ class ContactLaw:
     source: str
     numbers: tuple[Parameter, ...]  # of the right stop; a stop that has the first of them has this law
     left: tuple[Parameter, ...]  # of the left stop, one for each; left out, they follow the right one's
-    options: tuple[Option, ...] = ()
+    options: tuple[Choice, ...] = ()
 
     @property
     def numbers_of_both(self) -> tuple[Parameter, ...]:
