@@ -4,7 +4,7 @@ from __future__ import annotations  # help() says ArrayLike, and not all that th
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from typing import Literal
+from typing import Any, Literal
 
 from numpy.typing import ArrayLike
 
@@ -71,10 +71,24 @@ class Contact:
 NAMES = tuple(one.name for one in fields(Contact))
 
 
-def contact_of(key: str, value: object) -> Contact:
-    """A contact, also of a mapping with its arguments. Raises ParameterError."""
+def contacts_in(value: object) -> tuple[Contact, ...]:
+    """Contacts of a list of them, or of mappings with their arguments. Raises ParameterError."""
+    if not isinstance(value, (list, tuple)) or not value:
+        raise ParameterError("contacts", value, "a list of one Contact or more")
+    return tuple(_contact(f"contacts[{i}]", one) for i, one in enumerate(value))
+
+
+def _contact(key: str, value: object) -> Contact:
     if isinstance(value, Contact):
         return value
     if not isinstance(value, Mapping) or not set(value) <= {*NAMES} or not {"contact_normal", "b"} <= set(value):
         raise ParameterError(key, value, f"a Contact, or its {', '.join(NAMES)}")
     return Contact(**value)
+
+
+def check_left_out(given: Mapping[str, Any]) -> None:
+    """Raise ParameterError for a number of a contact that is given beside the list of contacts."""
+    usual = {one.name: one.default for one in fields(Contact)}
+    for name in NAMES:
+        if given.get(name) is not None and given[name] != usual[name]:
+            raise ParameterError(name, given[name], "left out where `contacts` are given, which have it")

@@ -5,7 +5,7 @@ from __future__ import annotations  # help() says ArrayLike, and not all that th
 import inspect
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import fields, replace
+from dataclasses import replace
 from functools import cached_property, partial
 from typing import Any, Literal
 
@@ -20,7 +20,7 @@ from vibro_sweep.model import wording
 from vibro_sweep.model.checked_model import checked, checked_option
 from vibro_sweep.model.checked_numbers import UNITS_ALLOWED
 from vibro_sweep.model.contact_element import NAMES as CONTACT_NAMES
-from vibro_sweep.model.contact_element import Contact, contact_of
+from vibro_sweep.model.contact_element import Contact, check_left_out, contacts_in
 from vibro_sweep.model.contact_laws import OTHER_STOPS, STOP_NUMBERS
 from vibro_sweep.model.linear import Family, Linear
 from vibro_sweep.model.models import MODELS, model_named
@@ -86,9 +86,9 @@ class Oscillator:
     def _set(self, model: Model, given: Mapping[str, Any], others: tuple[Contact, ...] = ()) -> None:
         given = dict(given)
         if (contacts := given.pop("contacts", None)) is not None:
-            others = _contacts_in(contacts)
+            others = contacts_in(contacts)
             if "contact_normal" in (one.name for one in model.options):  # the first one is its own
-                _check_left_out(given)
+                check_left_out(given)
                 given, others = given | vars(others[0]), others[1:]
         vars(self).update(model=model, given=checked(model, given), others=others)
         for i, one in enumerate(others, 2):
@@ -265,21 +265,6 @@ def _made(model: Model, given: Mapping[str, Any], others: tuple[Contact, ...] = 
 
 def _again(name: str, given: Mapping[str, Any], others: tuple[Contact, ...]) -> Oscillator:
     return _made(MODELS[name], given, others)
-
-
-def _contacts_in(value: object) -> tuple[Contact, ...]:
-    """Contacts of a list of them, or of mappings. Raises ParameterError."""
-    if not isinstance(value, (list, tuple)) or not value:
-        raise ParameterError("contacts", value, "a list of one Contact or more")
-    return tuple(contact_of(f"contacts[{i}]", one) for i, one in enumerate(value))
-
-
-def _check_left_out(given: Mapping[str, Any]) -> None:
-    """Raise ParameterError for a number of a contact that is given beside the list of contacts."""
-    usual = {one.name: one.default for one in fields(Contact)}
-    for name in CONTACT_NAMES:
-        if given.get(name) is not None and given[name] != usual[name]:
-            raise ParameterError(name, given[name], "left out where `contacts` are given, which have it")
 
 
 def _check_one_contact(system: Oscillator) -> None:
