@@ -17,6 +17,7 @@ from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.results import layout
 from vibro_sweep.scene import Scene
 
+ALWAYS = 0.2  # seconds of a run of any length: making the file, loading kernels
 PLACES = 8  # of the sweep, at which orbits are computed, at most
 ENOUGH = 0.1  # seconds of a measurement from which it may be the last one
 LONGEST = 0.6  # seconds of all of them from which no other one begins
@@ -76,11 +77,10 @@ def estimate(scene: Scene, workers: int | None = None) -> Estimate:
     with event.install_timer("numba:compile", compiling.append):
         _timed(scene, 1, 1, 1)
     workers = workers or available_cores()
-    seconds = scene.n_points * orbit_seconds(scene, workers) / threads_of(scene, workers)
+    work = scene.n_points * orbit_seconds(scene, workers) / threads_of(scene, workers)
     longest = (max(scene.transient, scene.settle or 0) + scene.record) / periods
-    return Estimate(
-        scene.n_points, scene.n_points * periods, layout.size(scene), seconds, seconds * longest, sum(compiling)
-    )
+    seconds, most = ALWAYS + work, ALWAYS + work * longest
+    return Estimate(scene.n_points, scene.n_points * periods, layout.size(scene), seconds, most, sum(compiling))
 
 
 def threads_of(scene: Scene, workers: int) -> int:

@@ -57,7 +57,9 @@ class Sweep:
     def values(self, name: str, first: Sequence[str] = (), index: Any = ()) -> np.ndarray:
         """The values of a variable, at an index, with these dimensions first, in their order. Raises StoreError."""
         if name in self._known:
-            variable = xarray.Variable(self.data[name].dims, self._known[name])
+            variable = xarray.Variable(
+                self.data[name].dims, self._known[name], fastpath=True
+            )  # without looking for dask
         else:
             variable = self.data[name].variable
             if self._verify is not None and name in self.data.data_vars:
