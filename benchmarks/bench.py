@@ -16,6 +16,7 @@ import resource
 import statistics
 import subprocess
 import sys
+import tempfile
 import time
 import warnings
 from collections.abc import Callable
@@ -80,9 +81,10 @@ class Used(NamedTuple):
 
 
 def child(*arguments, **environment: str) -> Used:
-    """A fresh Python with these arguments."""
+    """A fresh Python with these arguments; not in a checkout, which it would import in place of that of PYTHONPATH."""
     command, before = [sys.executable, *map(str, arguments)], resource.getrusage(resource.RUSAGE_CHILDREN)
-    done = subprocess.run(command, env=os.environ | environment, capture_output=True, text=True)
+    place = tempfile.gettempdir()
+    done = subprocess.run(command, cwd=place, env=os.environ | environment, capture_output=True, text=True)
     if done.returncode:
         raise RuntimeError(f"{arguments} ended with status {done.returncode}: {done.stderr[-500:]}")
     after = resource.getrusage(resource.RUSAGE_CHILDREN)

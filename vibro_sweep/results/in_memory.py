@@ -15,7 +15,11 @@ class InMemory(Statuses):
     """The Dataset of a sweep with room for its numbers."""
 
     def __init__(self, data: xarray.Dataset):
-        self.data = data.copy(data={name: np.array(one.values) for name, one in data.data_vars.items()})
+        room = {
+            name: xarray.Variable(one.dims, np.array(one.values), one.attrs, fastpath=True)
+            for name, one in data.data_vars.items()
+        }
+        self.data = xarray.Dataset(room, data.coords, data.attrs)
         lists = {name: value for name, value in data.attrs.items() if isinstance(value, list) and len(value) == 1}
         self.data.attrs |= {name: value for name, (value,) in lists.items()}  # as xarray reads them
         self.status, self._began = self.data["status"].values, time.perf_counter()

@@ -1,6 +1,7 @@
 """From a scene to the Dataset of its file, with nothing computed: variables, coordinates, attributes, fill values."""
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 import xarray
@@ -14,7 +15,7 @@ from vibro_sweep.tables.file_columns import SWEEP
 from vibro_sweep.tables.observables import DIMENSIONS, SETTLE, TRAJECTORY, asked_for, averaged
 from vibro_sweep.tables.observables import dimensions as dimensions_of
 from vibro_sweep.tables.quantity import Observable, Quantity
-from vibro_sweep.tables.units import unit_in
+from vibro_sweep.tables.units import Units, unit_in
 
 MATRIX = ("row", "column")  # the dimensions of a matrix
 
@@ -80,23 +81,28 @@ def dataset(scene: Scene) -> xarray.Dataset:
     coords = {}
     for name, values in axes.items():
         of = scene.system.described.get(name, AXES.get(name))
-        coords[name] = (name, values, described(of, unit_in(of.units, units)))
+        coords[name] = variable((name,), values, of, units)
     for name, values in _following(scene).items():
         of = AXES.get(name) or stored_names(scene.system.masses)[name]
         keys = resolved_numbers.dimensions(scene)[name]
-        coords[name] = (keys, values, described(of, unit_in(of.units, units)))
+        coords[name] = variable(keys, values, of, units)
     for name, values in resolved_numbers.matrices(scene).items():
         option = next(one for one in scene.system.model.options if one.name == name)
         of = Quantity(name, f"matrix {name}", option.text, units=option.units)
-        coords[name] = (MATRIX, values, described(of, unit_in(of.units, units)))
+        coords[name] = variable(MATRIX, values, of, units)
     lead = (*scene.sweep, *(["start"] if scene.n_starts > 1 else []))
     variables = {}
     for name, quantity in quantities(scene).items():
         empty = np.broadcast_to(np.array(quantity.fill, quantity.dtype), shape_of(scene, quantity, axes))
-        variables[name] = ((*lead, *quantity.dimensions), empty, described(quantity, unit_in(quantity.units, units)))
+        variables[name] = variable((*lead, *quantity.dimensions), empty, quantity, units)
     about = {"kind": SWEEP, "title": f"vibro_sweep: {scene.name}", "scene": scene.text}
     about |= {"sweep_dimensions": list(scene.sweep)}
     return xarray.Dataset(variables, coords, about | resolved_numbers.attributes(scene))
+
+
+def variable(dimensions: Sequence[str], values, of: Quantity, units: Units | None) -> xarray.Variable:
+    """A variable of a file; made without xarray's look for arrays of dask, which would be imported."""
+    return xarray.Variable(dimensions, np.asarray(values), described(of, unit_in(of.units, units)), fastpath=True)
 
 
 def _following(scene: Scene) -> dict[str, np.ndarray]:
