@@ -94,9 +94,11 @@ def compute(computation: Computation, scene) -> bool:
     with computation.under_way(ValueError) as (executor, progress):
         report = run.run(scene, computation.output, computation.workers, executor, progress, computation.mode)
     if of_sweep and not computation.quiet:
-        from .summaries import summary
+        from .summaries import advice_on, summary
 
         say(summary(computation.output, report, scene.settle))
+        if advice := advice_on(scene):
+            say(advice)
     elif not computation.quiet:
         say_tables(computation.output)
     return of_sweep and bool(report.bad)

@@ -67,10 +67,6 @@ def _contact_problems(form: Form, system: Oscillator) -> list[str]:
         text = "both stops are rigid, which are struck and not pressed; observe impacts"
         return [problem("observe", sorted(form.observe), text)] if "contacts" in form.observe else []
     problems = []
-    stops = {"right": [1], "left": [-1], "both": [1, -1]}[system.options.get("stops", "both")]
-    if "impacts" in form.observe and q.is_compliant(stops).all():
-        text = "a compliant stop is pressed, and not struck; observe contacts"
-        problems.append(problem("observe", sorted(form.observe), text))
     if form.dynamics == "map":
         problems.append(problem("dynamics", form.dynamics, f"needs rigid stops: {why_rigid('map')}"))
     if form.section.kind == "impact" and q.is_compliant(1 if form.section.stop == "right" else -1):
