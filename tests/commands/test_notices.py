@@ -37,7 +37,7 @@ def told(tmp_path, program: str) -> str:
         ("", f"vibro-sweep: {MESSAGE}vibro-sweep: warning: beware\n"),
         *slow_cases(
             ("logging.basicConfig(format='of mine: %(message)s')", f"of mine: {MESSAGE}of mine: beware\n"),
-            ("logging.getLogger('vibro_sweep').setLevel(logging.WARNING)", "vibro_sweep: warning: beware\n"),
+            ("logging.getLogger('vibro_sweep').setLevel(logging.WARNING)", "vibro-sweep: warning: beware\n"),
             ("logging.getLogger('vibro_sweep').setLevel(logging.CRITICAL)", ""),
             ("logging.getLogger('vibro_sweep').addHandler(logging.NullHandler())", ""),
         ),

@@ -25,7 +25,7 @@ from typing import Any, Literal
 
 import numpy as np
 import vibro_sweep as vs
-from vibro_sweep.types import Branch, PeriodicOrbit
+from vibro_sweep.types import Branch, PeriodicOrbit, Scene
 
 system: vs.System = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=6.6, tau="grazing", stops="both")
 physical = vs.System.physical(
@@ -46,6 +46,8 @@ print(mapping((6.7, 0, 3, 0)) + mapping.jacobian((6.7, 0, 3, 0))[0])
 scene = vs.load_scene(Path("scene.yaml")).replace(record=5)
 text: str = scene.to_yaml()
 mode: Literal["new", "resume", "overwrite"] = "overwrite"
+assert isinstance(scene, Scene)
+seconds: float = vs.estimate(scene, workers=1).seconds
 report = vs.run(scene, "sweep.h5", workers=1, mode=mode)
 bad: int = report.bad
 with vs.open("sweep.h5") as data:
@@ -78,6 +80,8 @@ print(len(vs.follow_branches(again, "b", (6.6, 7.0), depth=1)))
 given: dict[str, Any] = dict(rayleigh=(0.1, 0), force=[1, 0], contact_normal=[1, -1], omega=0.8, b=1, R=0.7)
 pair = vs.Oscillator([[1, 0], [0, 2]], np.eye(2), **given)
 print(vs.grazing(pair).b_right, vs.simulate(pair.replace(b=0.5), (0, 0, 0, 0), periods=2).impacts["xdot"])
+wall = vs.Contact([1, 0], b=1.0, R=0.7, stops="right")
+print(vs.Oscillator([[1, 0], [0, 2]], np.eye(2), force=[1, 0], omega=0.8, contacts=[wall]).contacts)
 try:
     vs.System(mu_m=-1, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=6.6)
 except vs.ParameterError as error:
