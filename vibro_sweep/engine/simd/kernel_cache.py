@@ -142,6 +142,7 @@ class _Cache(caching.FunctionCache):
             except BlockingIOError:
                 _once(logging.INFO, "waits", "another process compiles them: waiting for it")
                 self._lock.close()
+                self._lock = None  # it is the other's, which removes it
                 time.sleep(PAUSE)
                 waited = True
             except OSError:  # nothing can be written there, or locked
