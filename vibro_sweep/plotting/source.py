@@ -24,12 +24,12 @@ class PlotError(VibroSweepError, ValueError):
     --------
     >>> import vibro_sweep as vs
     >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
-    >>> data = vs.sweep(system, {"b": [6.4, 6.5]}, transient=100, record=50)
+    >>> data = vs.sweep(system, {"b": [6.4, 6.5]}, transient=100, record=50, observe=["lyapunov"])
     >>> try:
-    ...     vs.plot(data, "basins")
+    ...     vs.plot(data, "history")
     ... except vs.PlotError as error:
     ...     print(error)
-    kind 'basins': this dataset can show bifurcation, lyapunov, iteration, poincare (or all)
+    kind 'history': this dataset can show lyapunov (or all); history needs a trajectory
     """
 
 
