@@ -1,9 +1,12 @@
 """Orbits that are under way after their transient go on until they have arrived; others are as without `settle`."""
 
+import re
+
 import numpy as np
 import pytest
 from support import sample, slow_cases
 from support.arrivals import study_of_settle
+from support.programs import main
 from support.same_bits import study
 from support.searching import searched
 
@@ -98,6 +101,17 @@ def test_the_same_bits_of_any_machine(seeds):
 def test_at_most_twice_what_is_needed(seeds):
     counted, _ = searched(study_of_settle, seeds)
     assert counted["took_more_than_twice"] == counted["not_arrived"] == 0 and counted["went_on"] > len(seeds) / 10
+
+
+def test_the_settle_that_info_names_is_enough(tmp_path, capsys):
+    """Of a file whose transient was long already, and not long enough."""
+    system = "{type: one_mass, k: 1, zeta: 5.0e-5, F: 1.0e-4, omega: 1, R: 0.5, b: 9, stops: right, tau: 0}"
+    scene, file = tmp_path / "slow.yaml", str(tmp_path / "slow.h5")
+    for more in ("", "settle: {}, "):
+        named = more.format(*re.findall(r"orbit: settle: (\d+)`", capsys.readouterr().out))
+        scene.write_text(f"system: {system}\norbit: {{transient: 9000, {named}record: 60}}\n")
+        assert main(["run", str(scene), "-o", file, "--overwrite", "--quiet"]) == 0 and main(["info", file]) == 0
+    assert "settle: " in scene.read_text() and "not settled" not in capsys.readouterr().out
 
 
 def test_what_fails_has_no_length_of_its_transient():

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray
 
+from vibro_sweep.checks.arguments import MAX_COUNT
 from vibro_sweep.cli.ragged_tables import curves_table, special_table, windows_table
 from vibro_sweep.files.file_errors import StoreError
 from vibro_sweep.files.opening import open_file
@@ -131,7 +132,9 @@ def _to_go(sweep: Sweep) -> str:
         return ""
     half, longest = (f"{float(f'{periods:.2g}'):,.0f}" for periods in (np.median(needed), needed.max()))
     most = "" if half == longest else f", half of them within {half}"
-    enough = 10 ** math.ceil(math.log10(2 * needed.max()))  # predictions are too short while the motion still changes
+    done = max(sweep.attrs["transient"], sweep.attrs.get("settle", 0))
+    # twice, since predictions are too short while the motion still changes
+    enough = min(10 ** math.ceil(math.log10(done + 2 * needed.max())), MAX_COUNT)
     within = f"; {len(needed):,} arrive at a periodic orbit within about {longest} periods more{most}"
     return f"{within}: with `orbit: settle: {enough}` each goes on for as many as it needs"
 

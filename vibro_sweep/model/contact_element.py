@@ -9,8 +9,9 @@ from typing import Any, Literal
 from numpy.typing import ArrayLike
 
 from vibro_sweep.checks.refusals import ParameterError
+from vibro_sweep.model.checked_model import checked_option
 from vibro_sweep.model.checked_numbers import checked_normal, checked_number
-from vibro_sweep.model.models.declaration import CONTACT, OF_STOPS, STOPS
+from vibro_sweep.model.models.declaration import CONTACT, OF_STOPS, WHICH_STOPS
 from vibro_sweep.model.stops import check_stops
 from vibro_sweep.tables.parameters import FREQUENCY, PHASE
 
@@ -50,10 +51,8 @@ class Contact:
     stops: Literal["both", "right", "left"] = "both"
 
     def __post_init__(self):
-        for name, words in (("stops", STOPS), *((one.name, one.words) for one in OF_STOPS)):
-            value = getattr(self, name)
-            if not (isinstance(value, str) and value in words):
-                raise ParameterError(name, value, f"{', '.join(words[:-1])} or {words[-1]}")
+        for one in (WHICH_STOPS, *OF_STOPS):
+            checked_option(one, getattr(self, one.name))
         object.__setattr__(self, "contact_normal", checked_normal(self.contact_normal))
         for one in NUMBERS:
             value = getattr(self, one.name)
