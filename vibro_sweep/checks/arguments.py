@@ -8,6 +8,8 @@ from typing import Any, TypeVar, overload
 import numpy as np
 
 from vibro_sweep.checks.errors import ArgumentError, ArgumentTypeError
+from vibro_sweep.checks.meant import did_you_mean
+from vibro_sweep.checks.not_computed import why_not_computed
 from vibro_sweep.checks.real import array_of, number_of
 from vibro_sweep.checks.refusals import cut, not_allowed
 
@@ -103,21 +105,28 @@ def accepts(function: object, *given: Any, **named: Any) -> bool:
 
 def names_its_arguments(function: F) -> F:
     """The function, which says what its arguments are where it is called with others: TypeError."""
-    signature = inspect.signature(function)
-    known = [one.name for one in signature.parameters.values()]
-    any_name = any(one.kind == one.VAR_KEYWORD for one in signature.parameters.values())
+    signature, name = inspect.signature(function), function.__qualname__.removesuffix(".__init__")
 
     @functools.wraps(function)
     def called(*given, **named):
-        try:
-            signature.bind(*given, **named)
-        except TypeError as error:
-            unknown = [] if any_name else [cut(name) for name in named if name not in known]
-            what = f"{', '.join(unknown)}: no such argument" if unknown else str(error)
-            raise ArgumentTypeError(f"{function.__name__}: {what}; it takes {', '.join(known)}") from None
+        bound(name, signature, *given, **named)
         return function(*given, **named)
 
     return called  # type: ignore[return-value]
+
+
+def bound(name: str, signature: inspect.Signature, /, *given: Any, **named: Any) -> inspect.BoundArguments:
+    """The arguments of a call by their names. Raises TypeError where they are not those of the signature."""
+    try:
+        return signature.bind(*given, **named)
+    except TypeError as error:
+        kinds = {one.name: one.kind for one in signature.parameters.values() if one.name != "self"}
+        any_name = inspect.Parameter.VAR_KEYWORD in kinds.values()
+        unknown = [] if any_name else [cut(word) for word in named if word not in kinds]
+        what = f"{', '.join(unknown)}: no such argument" if unknown else str(error)
+        why = why_not_computed(unknown[0]) if unknown else None
+        known = (did_you_mean(unknown[0], kinds) if unknown else "") + f"it takes {', '.join(kinds)}"
+        raise ArgumentTypeError(f"{name}: {what}; {why or known}") from None
 
 
 def check_type(name: str, value: object, kinds: type | tuple[type, ...], allowed: str) -> None:

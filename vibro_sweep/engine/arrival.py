@@ -253,14 +253,18 @@ def nothing_known(found):
 
 
 @jit
-def is_worth_a_look(section, scale, p, long):
-    """Whether the last points do not say already that the orbit does not approach one with the period p."""
+def is_near(section, scale, p):
+    """Whether the last point is near to the one p before it."""
     last = len(section) - 1
-    if long:
-        for i in range(section.shape[1]):
-            if not abs(section[last, i] - section[last - p, i]) * scale[i] <= NEAR:
-                return False
-        return True
+    for i in range(section.shape[1]):
+        if not abs(section[last, i] - section[last - p, i]) * scale[i] <= NEAR:
+            return False
+    return True
+
+
+@jit
+def is_worth_a_look(section, scale, p):
+    """Whether the last points do not say already that the orbit does not approach one with the period p."""
     return roughly(section, scale, p, max(0, len(section) - 3 * p - LOOKED_AT)) <= WORTH_A_LOOK
 
 
@@ -297,11 +301,14 @@ def look(section, o, scale, rounding, fit, found):
     best, left = Recurrence(0.0, 0.0, LIKE / BETTER, 0.0), LONG_LOOKS
     for p in range(1, (len(section) - LEAST_FITTED) // 3 + 1):
         long = p > min(SHORT, len(section) // 8)
-        if not is_worth_a_look(section, scale, p, long):
+        if long:
+            if not is_near(section, scale, p):
+                continue
+            left -= 1
+            if left < 0:
+                break
+        if not is_worth_a_look(section, scale, p):
             continue
-        left -= int(long)
-        if left < 0:
-            break
         r = recurrence(section, scale, p, 0 if long else second_half(section, p))
         if long and not goes_there(r, long):
             continue

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from vibro_sweep.checks.meant import did_you_mean
 from vibro_sweep.checks.not_computed import why_not_computed
 from vibro_sweep.checks.real import array_of, number_of
 from vibro_sweep.checks.refusals import ParameterError
@@ -21,7 +22,7 @@ def checked(model: Model, given: Mapping[str, Any]) -> dict[str, Any]:
     known = {one.name: one for one in (*model.options, *model.numbers)}
     for name, value in given.items():
         if name not in known:
-            why = why_not_computed(name) or f"{model.name} has {', '.join(known)}"
+            why = why_not_computed(name) or f"{did_you_mean(name, known)}{model.name} has {', '.join(known)}"
             raise ParameterError(name, value, f"left out; {why}")
     result = {}
     for one in model.options:

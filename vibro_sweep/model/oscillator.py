@@ -12,9 +12,9 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from vibro_sweep.checks.arguments import check_type
+from vibro_sweep.checks.arguments import bound, check_type, names_its_arguments
 from vibro_sweep.checks.errors import ArgumentError
-from vibro_sweep.checks.not_computed import PAGE, why_not_computed
+from vibro_sweep.checks.not_computed import PAGE
 from vibro_sweep.checks.refusals import ParameterError
 from vibro_sweep.model import wording
 from vibro_sweep.model.checked_model import checked, checked_option
@@ -67,6 +67,7 @@ class Oscillator:
     2.711631
     """
 
+    @names_its_arguments
     def __init__(
         self, M: ArrayLike, K: ArrayLike, C: ArrayLike | None = None, *, modal_damping: ArrayLike | None = None,
         rayleigh: ArrayLike | None = None, force: ArrayLike = 0, force_cos: ArrayLike = 0, constant: ArrayLike = 0,
@@ -293,14 +294,11 @@ def _signature(*declared: Parameter | Option, kind=POSITIONAL) -> inspect.Signat
     return inspect.Signature(parameters)
 
 
-def _arguments(signature: inspect.Signature, *values: Any, **given: Any) -> dict[str, Any]:
+def _arguments(name: str, signature: inspect.Signature, /, *values: Any, **given: Any) -> dict[str, Any]:
     """The arguments by name. TypeError where they are not those of the signature."""
-    for name in given:
-        if name not in signature.parameters and (why := why_not_computed(name)):
-            raise ParameterError(name, given[name], f"left out; {why}")
-    bound = signature.bind(*values, **given)
-    bound.apply_defaults()
-    return bound.arguments
+    arguments = bound(name, signature, *values, **given)
+    arguments.apply_defaults()
+    return arguments.arguments
 
 
 class System(Oscillator):
@@ -317,7 +315,7 @@ class System(Oscillator):
     __signature__ = _signature(*PAPER, WHICH_STOPS, *PARAMETERS[len(PAPER) :], *OF_STOPS, UNITS)
 
     def __init__(self, *numbers: float, **given: Any) -> None:
-        self._set(MODEL, _arguments(System.__signature__, *numbers, **given))
+        self._set(MODEL, _arguments("System", System.__signature__, *numbers, **given))
 
     def __repr__(self) -> str:
         """The call that makes it, without the numbers of compliant stops where there is none."""
@@ -344,7 +342,7 @@ class System(Oscillator):
         >>> round(system.omega, 6), round(system.b, 6), round(system.zeta, 6)
         (0.63, 4.0, 0.05)
         """
-        given = _arguments(_PHYSICAL, **given)
+        given = _arguments("System.physical", _PHYSICAL, **given)
         stops = checked_option(WHICH_STOPS, given["stops"])
         same = {name: given[name] for name in given if name in System.__signature__.parameters}
         return cls(**same | in_numbers(given, stops))

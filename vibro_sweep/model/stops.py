@@ -88,9 +88,6 @@ def check_stops(given: Mapping[str, Any]) -> None:
         for key in keys[1:]:
             raise ParameterError(key, given[key], f"left out where {keys[0]} is given: a stop is {' or '.join(LAWS)}")
     right, left = law_given(given, "right"), stop_of(given, "left").law
-    if (left if stops == "left" else right) is None:
-        keys = [f"{law.names['right'][0]}, of a {law.name} stop" for law in LAWS.values() if law is not RIGID]
-        raise ParameterError("R", None, f"given; or {' or '.join(keys)}")
     for law in LAWS.values():
         of_right, of_left = law.names["right"], law.names["left"]
         if law not in (right, left):
@@ -102,7 +99,9 @@ def check_stops(given: Mapping[str, Any]) -> None:
             _refuse(given, of_left[1:], f"it belongs to a stop with {of_left[0]}")
         if stops == "right" and (law is not RIGID or right is not RIGID):
             _refuse(given, of_left, "there is no left stop")
-
+    if (left if stops == "left" else right) is None:
+        keys = [f"{law.names['right'][0]}, of a {law.name} stop" for law in LAWS.values() if law is not RIGID]
+        raise ParameterError("R", None, f"given; or {' or '.join(keys)}")
     for side in ("right", "left"):
         _check_stiffness(given, side)
 

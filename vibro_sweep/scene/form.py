@@ -11,6 +11,7 @@ from typing import Annotated, Literal, get_args
 from pydantic import ConfigDict, Discriminator, Field, Strict, Tag, WithJsonSchema, create_model
 
 from vibro_sweep.checks.arguments import MAX_COUNT
+from vibro_sweep.checks.meant import SYNONYMS
 from vibro_sweep.model.built import Built
 from vibro_sweep.model.models import DEFAULT, MODELS
 from vibro_sweep.model.models.declaration import Model
@@ -21,7 +22,6 @@ from vibro_sweep.tables.quantity import Parameter
 
 from .continue_form import continue_form
 from .fields import WHICH, Form, Whole, given, keys, swept
-from .slips import SYNONYMS
 from .systems import PhysicalSystemForm, form_of
 
 SHOWN = 8  # masses that the JSON Schema knows the coordinates of

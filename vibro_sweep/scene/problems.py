@@ -8,6 +8,7 @@ from itertools import islice
 from pydantic import ValidationError
 
 from vibro_sweep.checks.errors import VibroSweepError
+from vibro_sweep.checks.meant import did_you_mean, meant
 from vibro_sweep.checks.not_computed import why_not_computed
 from vibro_sweep.checks.refusals import LONGEST, cut, shown
 from vibro_sweep.tables.observables import WORDS
@@ -16,7 +17,6 @@ from . import slips
 from .data import Foreign
 from .fields import Form
 from .form import StepAxis, tagged
-from .slips import meant
 
 MAX_LINES = 20
 LONGEST_HINT = 300  # letters; a longer one repeats a long value
@@ -111,7 +111,7 @@ def _line(item, form, data) -> str:
         words = [word.strip("'") for word in ctx["expected"].replace(" or ", ", ").split(", ")]
         also = " or a number (radians)" if "tau as a word" in item["loc"] else ""
         hint = slips.other_form(path, given) or (slips.number_in_text(given) if also else None)
-        return problem(path, given, f"{_suggest(given, words)}allowed: {', '.join(words)}{also}{_and(hint)}")
+        return problem(path, given, f"{did_you_mean(given, words)}allowed: {', '.join(words)}{also}{_and(hint)}")
     if kind == "model_type":
         form = _AXIS_FORMS if model is StepAxis else f"the keys {', '.join(keys)}"
         return problem(path, given, f"must be a mapping with {form}{_and(slips.other_form(path, given))}")
@@ -154,7 +154,7 @@ def _unknown(loc, keys: list[str], given, data) -> str:
         return f"unknown key; {hint}"
     if "Omega" in keys and (hint := slips.of_frequency(key, given)):
         return f"unknown key; {hint}"
-    return f"unknown key; {_suggest(key, keys)}allowed here: {', '.join(keys)}"
+    return f"unknown key; {did_you_mean(key, keys)}allowed here: {', '.join(keys)}"
 
 
 def _and(hint: str | None) -> str:
@@ -186,8 +186,3 @@ def _place(loc, form: type[Form]) -> tuple[type[Form], str]:
             if field and isinstance(field.annotation, type) and issubclass(field.annotation, Form):
                 model = field.annotation
     return model, path or "scene"
-
-
-def _suggest(word: object, options: list[str]) -> str:
-    found = meant(word, options)
-    return f"did you mean `{found}`? " if found else ""

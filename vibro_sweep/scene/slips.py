@@ -1,13 +1,12 @@
 """What people write in a scene by mistake, and what to write instead."""
 
-import difflib
 import math
 import re
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from vibro_sweep.checks.meant import meant
 from vibro_sweep.checks.real import number_of
-from vibro_sweep.checks.refusals import cut
 from vibro_sweep.model.models import DEFAULT, MODELS
 
 PHYSICAL = ("M1", "M2", "K1", "K2", "C1", "C2", "P1", "P2", "Omega", "B", "B0")
@@ -16,64 +15,8 @@ NONDIMENSIONAL = (
     "b = B K1/(P1 + P2)"
 )
 
-SYNONYMS = {
-    "start": ("from", "min", "begin", "low", "lo", "initial", "init", "ic", "initial_state", "x0"),
-    "stop": ("to", "max", "end", "high", "hi", "until", "side"),
-    "num": ("n", "count", "number", "points", "steps", "size", "samples", "length"),
-    "step": ("by", "increment", "delta", "dx", "stride"),
-    "values": ("list", "value", "at"),
-    "omega": ("w", "ω", "frequency", "freq", "Omega", "Ω"),
-    "b": ("clearance", "gap", "delta", "B"),
-    "Omega": ("f", "frequency", "freq", "hz", "w"),
-    "B": ("clearance", "gap", "delta"),
-    "R": ("e", "restitution", "cor", "r"),
-    "zeta": ("ζ", "damping", "xi", "ξ"),
-    "mu_m": ("μ_m", "m", "mass_ratio"),
-    "mu_k": ("μ_k", "k", "stiffness_ratio"),
-    "f2": ("f", "f_2"),
-    "tau": ("phi", "phase", "τ"),
-    "stops": ("sides", "walls"),
-    "x1": ("x", "x_1"),
-    "v1": ("v", "v_1", "xdot1"),
-    "x2": ("y", "x_2"),
-    "v2": ("v_2", "xdot2"),
-    "transient": ("skip", "discard", "warmup", "warm_up"),
-    "record": ("periods", "keep", "total"),
-    "kind": ("type",),
-    "periods": ("length", "time", "duration"),
-    "samples": ("n", "num", "points"),
-    "system": ("parameters", "params", "oscillator"),
-    "sweep": ("scan", "parameter", "vary", "sweeps"),
-    "orbit": ("time", "periods", "duration", "simulation"),
-    "observe": ("output", "outputs", "observables", "compute", "quantities"),
-    "lyapunov": ("exponents", "exponent", "lyap", "le", "lle", "spectrum", "chaos"),
-    "section": ("poincare", "bifurcation", "points", "period", "states", "x1"),
-    "multipliers": ("floquet", "eigenvalues", "stability"),
-    "attractors": ("basins", "basin", "coexistence"),
-    "map": ("mapping", "discontinuity"),
-    "flow": ("oscillator", "ode", "exact"),
-    "dynamics": ("model",),
-    "contact_normal": ("along", "normal", "n"),
-    "parameter": ("along",),
-    "both": ("two", "2", "left and right", "right and left", "all"),
-    "up": ("yes", "true", "forward", "increasing"),
-    "down": ("backward", "decreasing"),
-}
 AXIS = "{start: 6.5, stop: 6.9, num: 401}"
 MATRICES = {one.name for model in MODELS.values() for one in model.options if one.kind == "matrix"}
-
-
-def meant(word: object, options: Iterable[str]) -> str | None:
-    """The option for which a word stands, if any: by spelling, or as a synonym."""
-    text, options = cut(str(word)), list(options)
-    by_lower = {option.lower(): option for option in reversed(options)}
-    if text.lower() in by_lower:
-        return by_lower[text.lower()]
-    for option in options:
-        if text in SYNONYMS.get(option, ()) or text.lower() in SYNONYMS.get(option, ()):
-            return option
-    close = difflib.get_close_matches(text.lower(), by_lower, n=1)
-    return by_lower[close[0]] if close else None
 
 
 def key_without_value(key: str) -> str | None:

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from vibro_sweep.checks.refusals import ParameterError, cut
+from vibro_sweep.checks.meant import did_you_mean
+from vibro_sweep.checks.refusals import ParameterError
 from vibro_sweep.model.checked_numbers import check_value
 from vibro_sweep.model.models import DEFAULT, MODELS
 from vibro_sweep.model.models.declaration import OF_STOPS, entries
@@ -13,7 +14,6 @@ from vibro_sweep.tables.quantity import Parameter
 from .axes import axis_values
 from .fields import Form
 from .problems import SceneError, problem
-from .slips import meant
 from .systems import PhysicalSystemForm
 
 
@@ -22,8 +22,9 @@ def kind_of(data: object, name: str) -> tuple[str, int]:
     system = data.get("system") if isinstance(data, dict) else None
     kind = system.get("type", DEFAULT) if isinstance(system, dict) else DEFAULT
     if not (isinstance(kind, str) and kind in MODELS):
-        hint = f"did you mean `{found}`? " if (found := meant(cut(str(kind)), MODELS)) else ""
-        raise SceneError(name, [problem("system.type", kind, f"{hint}allowed: {', '.join(MODELS)}")])
+        raise SceneError(
+            name, [problem("system.type", kind, f"{did_you_mean(kind, MODELS)}allowed: {', '.join(MODELS)}")]
+        )
     try:
         return kind, MODELS[kind].masses(system) if isinstance(system, dict) else 2
     except (KeyError, TypeError):  # what they follow from is missing, or no list: the form says so
