@@ -4,6 +4,7 @@ HDF5 has made the file whole, and does not touch it again. A status is written w
 disk, once a second: so what has a status is right, after a kill and after a power failure.
 """
 
+import math
 import os
 import time
 from pathlib import Path
@@ -17,11 +18,12 @@ from vibro_sweep.files.disk import faults_said, to_disk, write_all
 from vibro_sweep.files.file_errors import StoreError
 from vibro_sweep.files.hdf5 import CHECKS
 from vibro_sweep.files.verifying import end_record
-from vibro_sweep.results.boxes import Box, stretches
+from vibro_sweep.results.boxes import Box, Stretch, stretches
 from vibro_sweep.results.statuses import Statuses
 from vibro_sweep.tables.outcomes import NOT_COMPUTED
 
 SECONDS = 1.0  # between two times at which what was computed is brought to the disk: what a kill costs at most
+WHOLE: list[Stretch] = [((), 0)]  # all points, from the first one on
 KEPT = "what was computed until then is kept: `resume` continues it"
 
 
@@ -43,19 +45,19 @@ class SweepFile(Statuses):
         self._waiting: list[tuple[Box, np.ndarray]] = []  # statuses of numbers that may not be on the disk yet
         if again is not None:
             self.status[again] = NOT_COMPUTED
-            self._put("status", (), self.status)
+            self._put("status", WHOLE, self.status)
 
     def write(self, box: Box, arrays: dict[str, np.ndarray]) -> None:
         """Keep a block: within a second a kill does not lose it any more."""
-        lead = self.status[box].shape
+        lead, places = self.status[box].shape, list(stretches(self.status.shape, box))
         for name in self.names:
             _, shape, dtype = self._place[name]
             values = np.asarray(arrays[name], dtype, order="C")
             if values.shape != lead + shape[self.status.ndim :]:
                 raise ValueError(f"a block of the box {box} has `{name}` of another shape")
             if name != "status":
-                self._put(name, box, values)
-            self._put(f"{CHECKS}/{name}", box, checksums(values, self.status.ndim))
+                self._put(name, places, values)
+            self._put(f"{CHECKS}/{name}", places, checksums(values, self.status.ndim))
         statuses = np.asarray(arrays["status"], self.status.dtype)
         self.status[box] = statuses
         self._waiting.append((box, statuses))
@@ -74,7 +76,7 @@ class SweepFile(Statuses):
             raise StoreError(f"{self.path} was removed, or replaced, during the run, and what it held is lost")
         waiting, self._waiting = self._waiting, []
         for box, statuses in waiting:
-            self._put("status", box, statuses)
+            self._put("status", list(stretches(self.status.shape, box)), statuses)
         self._written = time.monotonic()
 
     def read(self, name: str) -> np.ndarray:
@@ -86,13 +88,13 @@ class SweepFile(Statuses):
         """Write what follows from all points, and that the file is complete. Returns the seconds of the run."""
         for name, values in following.items():
             values = np.asarray(values, self._place[name][2], order="C")
-            self._put(name, (), values)
-            self._put(f"{CHECKS}/{name}", (), checksums(values, self.status.ndim))
+            self._put(name, WHOLE, values)
+            self._put(f"{CHECKS}/{name}", WHOLE, checksums(values, self.status.ndim))
         seconds = round(time.perf_counter() - self._began, 3)
         self.commit()
         with faults_said(self.path, KEPT):
             to_disk(self._descriptor)
-        self._put(f"{CHECKS}/end", (), end_record(about | {"wall_time_s": seconds}))
+        self._put(f"{CHECKS}/end", WHOLE, end_record(about | {"wall_time_s": seconds}))
         with faults_said(self.path, KEPT):
             os.fsync(self._descriptor)
         return seconds
@@ -104,12 +106,13 @@ class SweepFile(Statuses):
         finally:
             os.close(self._descriptor)
 
-    def _put(self, name: str, box: Box, values: np.ndarray) -> None:
-        """Write a box of a dataset: the stretches that lie one after the other in the file."""
+    def _put(self, name: str, places: list[Stretch], values: np.ndarray) -> None:
+        """Write numbers of points: those that lie one after the other in the file at once."""
         offset, shape, dtype = self._place[name]
+        size = math.prod(shape[self.status.ndim :]) * dtype.itemsize  # of a point
         with faults_said(self.path, KEPT):
-            for place, first in stretches(shape, box):
-                write_all(self._descriptor, memoryview(values[place].tobytes()), offset + first * dtype.itemsize)
+            for place, first in places:
+                write_all(self._descriptor, memoryview(values[place].tobytes()), offset + first * size)
 
 
 def _stands(path: Path, descriptor: int) -> bool:

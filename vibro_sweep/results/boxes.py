@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 Box = tuple[slice, ...]
+Stretch = tuple[tuple[int, ...], int]
 
 
 def boxes(shape: tuple[int, ...], size: Callable[[], int], begin: int = 0, end: int | None = None) -> Iterator[Box]:
@@ -27,9 +28,9 @@ def boxes(shape: tuple[int, ...], size: Callable[[], int], begin: int = 0, end: 
         begin += length * step[cut]
 
 
-def stretches(shape: tuple[int, ...], box: Box) -> Iterator[tuple[tuple[int, ...], int]]:
-    """The parts of a box of the first axes that lie one after the other in memory: their places in the box, and the
-    number of the first entry of each in the whole array."""
+def stretches(shape: tuple[int, ...], box: Box) -> Iterator[Stretch]:
+    """The parts of a box whose points lie one after the other in memory: their places in the box, and the number of the
+    first point of each in the whole grid."""
     spans = [part.indices(extent)[:2] for part, extent in zip(box, shape, strict=False)]
     cut = [axis for axis, (first, end) in enumerate(spans) if end - first != shape[axis]]
     last = cut[-1] if cut else 0  # behind it all axes are whole
