@@ -12,7 +12,7 @@ import pytest
 from support import ROOT
 from support.cli import NUMBERS, assert_refused, scene
 from support.contents import bytes_in
-from support.programs import main, on_a_terminal
+from support.programs import ended, main, on_a_terminal
 
 import vibro_sweep as vs
 
@@ -202,6 +202,22 @@ def test_what_run_is_told(scene_folder, monkeypatch):
         ("good", "good.h5", 3, None, False, "resume"),
         ("good", "x.h5", None, None, True, "overwrite"),
     ]
+
+
+@pytest.mark.parametrize(
+    "clearance, stop, observe, said",
+    [
+        ("100", {}, "[section, impacts]", True),
+        ("100", {}, "[section]", False),  # not known
+        ("3", {}, "[section, impacts]", False),
+        ("100", {"R": None, "k_stop": "10"}, "[contacts]", True),
+        ("100", {"R": None, "k_stop": "10"}, "[section, impacts]", False),  # of a soft stop these say nothing
+    ],
+)
+def test_info_says_that_no_orbit_touches_a_stop(scene_folder, clearance, stop, observe, said):
+    (scene_folder / "far.yaml").write_text(scene(f"observe: {observe}", b=clearance, **stop))
+    assert main(["run", "far.yaml", "--quiet"]) == 0
+    assert ("no orbit touches a stop" in ended("info", "far.h5").out) is said
 
 
 @pytest.mark.slow

@@ -16,12 +16,16 @@ from vibro_sweep.files.file_errors import StoreError
 from vibro_sweep.files.opening import open_file
 from vibro_sweep.files.reading import open_whole
 from vibro_sweep.files.verifying import REMEDY, damage
+from vibro_sweep.model.contact_laws.compliant import LAW as COMPLIANT
 from vibro_sweep.results import ragged_dataset
 from vibro_sweep.results.sweep_dataset import Sweep
 from vibro_sweep.tables.exponents import CERTAIN, periods_to_go, sign_of
 from vibro_sweep.tables.file_columns import CHART, SWEEP, WINDOWS
 from vibro_sweep.tables.observables import GAP
 from vibro_sweep.tables.outcomes import NOT_COMPUTED, NOT_SETTLED, REASONS, VALID, named, status_of
+
+STRUCK = ("impacts_right", "impacts_left", "sticking_time")
+PRESSED = ("contacts_right", "contacts_left", "contact_time")
 
 
 class Description(NamedTuple):
@@ -70,7 +74,7 @@ def _examined(data: xarray.Dataset, path: Path) -> Description:
     if not data.encoding["complete"] and NOT_COMPUTED not in sweep.values("status"):
         lines.append("unfinished   its last line is missing; `--resume` completes it")
     if not found:
-        lines += [*_turning(sweep), *_exponents(sweep), *_accuracy(sweep)]
+        lines += [*_untouched(sweep), *_turning(sweep), *_exponents(sweep), *_accuracy(sweep)]
     return Description("\n".join([*lines, *made_by]), bool(found))
 
 
@@ -137,6 +141,18 @@ def _to_go(sweep: Sweep) -> str:
     enough = min(10 ** math.ceil(math.log10(done + 2 * needed.max())), MAX_COUNT)
     within = f"; {len(needed):,} arrive at a periodic orbit within about {longest} periods more{most}"
     return f"{within}: with `orbit: settle: {enough}` each goes on for as many as it needs"
+
+
+def _untouched(sweep: Sweep) -> list[str]:
+    """The line on sweeps in which nothing is struck or pressed, as far as contacts of all its stops are observed."""
+    soft = any(names[0] in {*sweep.attrs, *sweep.keys} for names in COMPLIANT.names.values())
+    names = [name for name in (*STRUCK, *PRESSED) if name in sweep]
+    if not set(PRESSED if soft else STRUCK) <= {*names}:
+        return []
+    computed = np.isin(sweep.values("status"), VALID)
+    if not computed.any() or any(sweep.values(name)[computed].any() for name in names):
+        return []
+    return ["no contact   no orbit touches a stop: b is too large; `vibro-sweep grazing SCENE.yaml` says b*"]
 
 
 def _turning(sweep: Sweep) -> list[str]:
