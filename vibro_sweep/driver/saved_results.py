@@ -86,7 +86,7 @@ def _scene_of(arrays: dict[str, np.ndarray], names: Sequence[str], system: Oscil
     bounds = {name: _range(there, name, one) for name, one in zip(names, value.T, strict=True)}
     begin = tuple(arrays["state"][at].tolist())
     period = int(arrays["branch_period"])
-    return Continuation("result", "", there, "state", begin, period, None, None, bounds, CURVES, (), 0)
+    return Continuation("result", there, "state", begin, period, None, None, bounds, CURVES, (), 0)
 
 
 def _range(system: Oscillator, name: str, values: np.ndarray) -> tuple[float, float]:

@@ -12,7 +12,6 @@ from vibro_sweep.plotting import figure
 from vibro_sweep.plotting.pictures import save
 from vibro_sweep.results.layout import size
 from vibro_sweep.scene import Scene
-from vibro_sweep.scene.written import data_of
 
 LARGEST = 64 * 10**6  # bytes of a file that goes to the page
 
@@ -21,7 +20,7 @@ def python_of(scene: Scene) -> str:
     """A program that computes and draws the same sweep."""
     if scene.dynamics == "map":
         return _program_of_mapping(scene)
-    data = data_of(scene)
+    data = scene.data()
     numbers = dict(data["system"])
     kind = numbers.pop("type", None)
     made = f"vs.Oscillator.named({kind!r}, " if kind else "vs.System("

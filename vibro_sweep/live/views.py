@@ -2,7 +2,6 @@
 
 import json
 from collections import OrderedDict
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,7 +10,7 @@ from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.live.requests import View
 from vibro_sweep.model.oscillator import Oscillator
 from vibro_sweep.scene import Scene, scene_of
-from vibro_sweep.scene.written import data_of
+from vibro_sweep.scene.written import system_data
 from vibro_sweep.tables.coordinates import state
 
 SPEEDS = {"speed_right": "right", "speed_left": "left"}
@@ -87,13 +86,13 @@ def height_of(system: Oscillator, y: str, arrays: dict[str, np.ndarray]) -> np.n
 def view_of(scene: Scene) -> View:
     """The view that shows a scene first: along its first swept number; without one along its clearance."""
     axis = next((key for key in scene.sweep if key in scene.system.described), "b")
-    system = data_of(replace(scene, sweep={}))["system"]
+    system = system_data(scene.system, ())
     if axis in scene.sweep:
         values = scene.sweep[axis]
         low, high = float(min(values)), float(max(values))
     else:
         low, high = span(float(scene.system.numbers[axis]))
-    start = data_of(scene).get("start", {}) if set(scene.sweep) == {axis} else {}
+    start = scene.data().get("start", {}) if set(scene.sweep) == {axis} else {}
     if scene.start.kind == "random":
         start = start | {"random": min(scene.start.count, 4)}
     return View(

@@ -1,33 +1,36 @@
 """From a YAML text with `continue` to a `Continuation`: branches or curves to be followed."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
 from pydantic import ValidationError
 
-from vibro_sweep.checks.refusals import ParameterError, cut, not_allowed
+from vibro_sweep.checks.refusals import ParameterError, not_allowed
 from vibro_sweep.model import wording
 from vibro_sweep.model.oscillator import Oscillator
+from vibro_sweep.tables.coordinates import state
 
+from .any_scene import AnyScene, parsed
 from .continue_form import ORIGINS
+from .data import Foreign
 from .fields import Form
 from .form import continuation_form
-from .problems import SceneError, form_problems, located, problem
+from .problems import SceneError, form_problems, problem
 from .system import kind_of, system_of
-from .written import continuation_data, yaml_of
-from .yaml_text import YAMLTextError, lines_of, read_yaml
+from .written import as_data, system_data
 
 _IN_FILES = ("sweep", "branches")  # orbits of a file, which has the first number of `parameter`
 _AT_SYSTEM = ("state", "itinerary", "free")  # orbits of `system` itself
 BY_BRANCHES = (*_AT_SYSTEM, "grazing")  # origins of curves that are orbits; their branches have the special points
 # Keys of `from` that belong to others
 _WITH = {"periods": ("state", "itinerary"), "special": ("branches",), "largest": ("sweep",)}
-_ABOUT = ("name", "text", "source")  # fields that say nothing of what is followed
+LONGEST = 100  # entries of what is given
 
 
 @dataclass(frozen=True, eq=False)
-class Continuation:
+class Continuation(AnyScene):
     """Branches to be followed, or with two numbers bifurcation curves.
 
     origin : one of `ORIGINS`, and `begin` what is given with it: a state (2N,), an itinerary, a path, a period, None
@@ -48,9 +51,6 @@ class Continuation:
     ('itinerary', 'R', {'b': (3.0, 4.5)})
     """
 
-    name: str
-    text: str
-    system: Oscillator
     origin: str
     begin: Any
     periods: int
@@ -60,11 +60,10 @@ class Continuation:
     of: tuple[str, ...]
     follow: tuple[str, ...]
     depth: int
-    source: Path | None = None  # the file that it was read from
 
-    def to_yaml(self) -> str:
-        """The scene as YAML, from its numbers; `text` is what it was read from."""
-        return yaml_of(continuation_data(self))
+    def data(self) -> dict[str, Any]:
+        """The data that its YAML holds; numbers that are the default are left out."""
+        return _data_of({one.name: getattr(self, one.name) for one in fields(self)})
 
     def replace(self, **changes) -> "Continuation":
         """A copy with other values of `system`, `origin`, `begin`, `parameter` and the other attributes.
@@ -73,21 +72,21 @@ class Continuation:
 
         Raises SceneError for what is not a scene.
         """
-        known = [field.name for field in fields(self) if field.name not in _ABOUT]
-        for key in changes:
-            if key not in known:
-                raise SceneError(self.name, [f"{cut(key)}: unknown; allowed here: {', '.join(known)}"])
+        self._check_names(changes)
         origin = changes.get("origin", self.origin)
         if not (isinstance(origin, str) and origin in ORIGINS):
             raise SceneError(self.name, [not_allowed("origin", origin, f"one of {', '.join(ORIGINS)}")])
-        result = _continuation_of(continuation_data(self, changes), self.name, "")
-        return replace(result, text=result.to_yaml(), source=self.source)
+        attributes = {one.name: getattr(self, one.name) for one in fields(self)}
+        for key, value in changes.items():
+            data = as_data(key, value)
+            # nothing here is long: what is, is refused as a whole
+            attributes[key] = Foreign(value) if isinstance(data, (list, dict)) and len(data) > LONGEST else data
+        return replace(_continuation_of(_data_of(attributes), self.name), source=self.source)
 
     @property
     def inputs(self) -> list[Path]:
         """The files that its run must not write to: its own, and that in which its orbits are."""
-        given = [Path(self.begin)] if self.origin in _IN_FILES else []
-        return [*([self.source] if self.source else []), *given]
+        return [*super().inputs, *([Path(self.begin)] if self.origin in _IN_FILES else [])]
 
     def __str__(self) -> str:
         """A few lines on what is followed."""
@@ -114,17 +113,34 @@ def is_continuation(data: object) -> bool:
     return isinstance(data, dict) and "continue" in data
 
 
-def parse_continuation(text: str, name: str = "scene") -> Continuation:
+def parse_continuation(text: str, name: str = "scene", source: Path | None = None) -> Continuation:
     """A Continuation from YAML text. Raises SceneError."""
-    try:
-        return _continuation_of(read_yaml(text), name, text)
-    except YAMLTextError as error:
-        raise SceneError(name, [str(error)]) from None
-    except SceneError as error:
-        raise SceneError(name, located(error.problems, lines_of(text))) from None
+    return parsed(text, name, source, _continuation_of)
 
 
-def _continuation_of(data: Any, name: str, text: str) -> Continuation:
+def _data_of(attributes: Mapping[str, Any]) -> dict[str, Any]:
+    """The data of the YAML text of a scene with these attributes, as it has them or as YAML does."""
+    system, begin, origin = attributes["system"], attributes["begin"], attributes["origin"]
+    if origin == "state" and isinstance(begin, (list, tuple)):
+        begin = dict(zip(state(len(begin) // 2), begin, strict=False))
+    more = {"periods": attributes["periods"]} if origin in ("state", "itinerary") else {}
+    more |= {"special": attributes["special"]} if origin == "branches" else {}
+    more |= {"largest": attributes["largest"]} if origin == "sweep" and attributes["largest"] is not None else {}
+    parameter = attributes["parameter"]
+    if isinstance(parameter, dict):
+        parameter = {key: _listed(bounds) for key, bounds in parameter.items()}
+    body = {"from": "free" if origin == "free" else {origin: begin, **more}, "parameter": parameter}
+    if isinstance(parameter, dict) and len(parameter) == 2:
+        body["of"] = _listed(attributes["of"])
+    body |= {"follow": _listed(attributes["follow"]), "depth": attributes["depth"]}
+    return {"system": system_data(system, ()) if isinstance(system, Oscillator) else system, "continue": body}
+
+
+def _listed(words: object) -> object:
+    return list(words) if isinstance(words, tuple) else words
+
+
+def _continuation_of(data: Any, name: str) -> Continuation:
     if not is_continuation(data):
         raise SceneError(name, ["continue: missing; a scene of branches or curves has it"])
     kind, masses = kind_of(data, name)
@@ -161,7 +177,7 @@ def _continuation_of(data: Any, name: str, text: str) -> Continuation:
         begin = tuple(begin.model_dump().values())
     origin = getattr(body, "from")
     return Continuation(
-        Path(name).stem, text, system, given[0], begin, origin.periods, origin.special, origin.largest,
+        Path(name).stem, system, given[0], begin, origin.periods, origin.special, origin.largest,
         ranges, body.of, body.follow, body.depth,
     )  # fmt: skip
 

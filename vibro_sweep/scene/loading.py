@@ -1,14 +1,17 @@
 """`load_scene`: from a YAML file to a scene of either kind."""
 
-from dataclasses import replace
+import os
 from pathlib import Path
 
 from vibro_sweep.checks.arguments import names_its_arguments
+from vibro_sweep.checks.file_names import checked_path, read_bytes
 
 from .continuation import Continuation, is_continuation, parse_continuation
+from .problems import SceneError
 from .scene import Scene, parse_scene
-from .yaml_reading import text_of
-from .yaml_text import YAMLTextError, read_yaml
+from .yaml_text import MAX_BYTES, YAMLTextError, read_yaml
+
+HDF5 = b"\x89HDF\r\n\x1a\n"  # how such files begin
 
 
 @names_its_arguments
@@ -29,10 +32,23 @@ def load_scene(path: str | Path) -> Scene | Continuation:
     >>> scene.sweep["b"].tolist(), scene.n_points
     ([6.4, 6.5, 6.6], 3)
     """
-    text, name = text_of(path)
+    path = checked_path("path", path)
+    name = os.fsencode(path.name).decode(errors="replace")  # the name of a file need not be text
+    text = _text_of(path, name)
     try:
         follows = is_continuation(read_yaml(text))
     except YAMLTextError:  # what is wrong is said below, with its line
         follows = False
-    scene = parse_continuation(text, name) if follows else parse_scene(text, name)
-    return replace(scene, source=Path(path).absolute())
+    return (parse_continuation if follows else parse_scene)(text, name, path.absolute())
+
+
+def _text_of(path: Path, name: str) -> str:
+    data = read_bytes(path, MAX_BYTES + 1, pipes=True)
+    if data.startswith(HDF5):
+        raise SceneError(name, ["is a data file, not a scene: `vibro-sweep info` and `plot` read it"])
+    if len(data) > MAX_BYTES:
+        raise SceneError(name, [f"longer than {MAX_BYTES} bytes"])
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise SceneError(name, [f"byte {error.start} is not UTF-8 text"]) from None

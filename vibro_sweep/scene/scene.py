@@ -2,33 +2,30 @@
 
 import math
 import textwrap
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from pydantic import ValidationError
 
 from vibro_sweep.checks.real import array_of
-from vibro_sweep.checks.refusals import cut
 from vibro_sweep.model import wording
 from vibro_sweep.model.built import BUILD, Built
 from vibro_sweep.model.grid import digest, grid
 from vibro_sweep.model.models import DEFAULT, MODELS
-from vibro_sweep.model.oscillator import Oscillator
 from vibro_sweep.tables.coordinates import START, start
 from vibro_sweep.tables.units import NONE, unit_in
 
+from .any_scene import AnyScene, parsed
 from .combinations import combination_problems, stop_problems
 from .form import built_form, scene_form
-from .problems import SceneError, form_problems, located, problem
+from .problems import SceneError, form_problems, problem
 from .size import size_problems
 from .starts import Start, start_of, start_problems, stops_of
 from .system import kind_of, sweep_of, system_of
-from .written import changed, data_of, yaml_of
-from .yaml_text import YAMLTextError, lines_of, read_yaml
-
-_ABOUT = ("name", "given", "source")  # fields that say nothing of what is computed
+from .written import KEYS, ORBIT, changed, progression, start_data, system_data, yaml_of
 
 
 @dataclass(frozen=True)
@@ -68,7 +65,7 @@ class Trajectory:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Scene:
+class Scene(AnyScene):
     """A scene: what to compute. `system` is the base; at each point of the sweep the swept numbers replace its own.
 
     dynamics : "flow", or "map" with its `order` and the clearance `expand_at` at which it is expanded; None: b*
@@ -91,9 +88,6 @@ class Scene:
     (50, (2,), 100)
     """
 
-    name: str
-    given: str | None  # the YAML text that it was read from
-    system: Oscillator
     dynamics: str
     order: int
     expand_at: float | None
@@ -106,21 +100,37 @@ class Scene:
     observe: frozenset[str]
     trajectory: Trajectory | None
     picture: str | None = None
-    source: Path | None = None
 
     @cached_property
     def text(self) -> str:
-        """The YAML text as given, if that is what this scene says; else generated. Raises SceneError for no scene."""
-        if isinstance(self.system, Built):  # there is no text for what the function does: its matrices stand for it
-            data = data_of(self)
-            return yaml_of(data | {"system": data["system"] | {"matrices": digest(self.system, self.sweep)}})
-        if self.given is not None and _equal(parse_scene(self.given), self):
+        """The YAML text that it was read from; of another scene `to_yaml`. Raises SceneError for no scene."""
+        if self.given is not None:
             return self.given
-        return parse_scene(self.to_yaml(), self.name).given
+        data = self.data()
+        if isinstance(self.system, Built):  # there is no text for what the function does: its matrices stand for it
+            return yaml_of(data | {"system": data["system"] | {"matrices": digest(self.system, self.sweep)}})
+        return parse_scene(yaml_of(data), self.name).text
 
-    def to_yaml(self) -> str:
-        """The scene as YAML, from its numbers; `text` is what it was read from."""
-        return yaml_of(data_of(self))
+    def data(self) -> dict[str, Any]:
+        """The data that its YAML holds; numbers that are the default are left out."""
+        data = {
+            "system": system_data(self.system, self.sweep),
+            "sweep": {KEYS.get(key, key): progression(values) for key, values in self.sweep.items()},
+            "start": start_data(self.start, self.sweep, self.system.masses),
+            "orbit": {name: getattr(self, name) for name in ORBIT if getattr(self, name) is not None},
+            "section": {"kind": self.section.kind},
+            "observe": sorted(self.observe),
+        }
+        if self.dynamics == "map":
+            data |= {"dynamics": "map", "order": self.order}
+            data |= {} if self.expand_at is None else {"expand_at": self.expand_at}
+        if self.section.kind == "impact":
+            data["section"]["stop"] = self.section.stop
+        if self.trajectory:
+            data["trajectory"] = {"periods": self.trajectory.periods, "samples": self.trajectory.samples}
+        if self.picture:
+            data["picture"] = self.picture
+        return {key: value for key, value in data.items() if value or key == "observe"}
 
     def replace(self, **changes) -> "Scene":
         """A copy with other values of `system`, `sweep`, `start`, `transient`, `record` and the other attributes.
@@ -129,23 +139,15 @@ class Scene:
 
         Raises SceneError for what is not a scene.
         """
-        known = [field.name for field in fields(self) if field.name not in _ABOUT]
-        for key in changes:
-            if key not in known:
-                raise SceneError(self.name, [f"{cut(key)}: unknown; allowed here: {', '.join(known)}"])
-        data = data_of(self)
+        self._check_names(changes)
+        data = self.data()
         if "sweep" in changes:  # what is swept no longer keeps its first value
-            data["system"] = data_of(replace(self, sweep={}))["system"]
+            data["system"] = system_data(self.system, ())
         result = scene_of(changed(data, changes), self.name)
         state, count = array_of(changes.get("start"), 1), 2 * result.system.masses
         if state is not None and len(state) != count:
             raise SceneError(self.name, [problem("start", state.tolist(), f"must be {count} numbers")])
         return replace(result, source=self.source)
-
-    @property
-    def inputs(self) -> list[Path]:
-        """The files that its run must not write to."""
-        return [self.source] if self.source else []
 
     @property
     def n_starts(self) -> int:
@@ -237,28 +239,13 @@ def _default(scene: Scene, name: str):
     return 0.0 if name == "offset" else None
 
 
-def _equal(one: Scene, other: Scene) -> bool:
-    """Whether two scenes say the same; their names and texts do not count."""
-    names = [field.name for field in fields(one) if field.name not in (*_ABOUT, "sweep")]
-    return (
-        all(getattr(one, name) == getattr(other, name) for name in names)
-        and list(one.sweep) == list(other.sweep)
-        and all(np.array_equal(one.sweep[key], other.sweep[key]) for key in one.sweep)
-    )
-
-
-def parse_scene(text: str, name: str = "scene") -> Scene:
+def parse_scene(text: str, name: str = "scene", source: Path | None = None) -> Scene:
     """A Scene from YAML text; `name` stands in messages, its stem in the scene. Raises SceneError."""
-    try:
-        return scene_of(read_yaml(text), name, text)
-    except YAMLTextError as error:
-        raise SceneError(name, [str(error)]) from None
-    except SceneError as error:
-        raise SceneError(name, located(error.problems, lines_of(text))) from None
+    return parsed(text, name, source, scene_of)
 
 
-def scene_of(data: object, name: str, given: str | None = None, built: Built | None = None) -> Scene:
-    """A Scene from the data that its YAML text, if there is one, holds. Raises SceneError.
+def scene_of(data: object, name: str, built: Built | None = None) -> Scene:
+    """A Scene from the data that its YAML holds. Raises SceneError.
 
     built : an oscillator that a function makes, in place of `system`
     """
@@ -281,7 +268,6 @@ def scene_of(data: object, name: str, given: str | None = None, built: Built | N
     trajectory = form.trajectory and Trajectory(form.trajectory.periods, form.trajectory.samples)
     scene = Scene(
         name=Path(name).stem,
-        given=given,
         system=system,
         dynamics=form.dynamics,
         order=form.order,

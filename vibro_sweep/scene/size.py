@@ -1,14 +1,12 @@
 """How large a scene may be: points, numbers in the file, and what must be in memory at once for one orbit."""
 
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Collection, Mapping, Sized
+from typing import Any, Protocol
 
 from vibro_sweep.tables.observables import WITH_STATES, of_an_impact
 
 from .problems import problem
-
-if TYPE_CHECKING:
-    from .scene import Scene
 
 MAX_POINTS = 10**9
 MAX_NUMBERS = 10**11  # doubles in the file, about a terabyte
@@ -17,6 +15,20 @@ MAX_AT_ONCE = 5 * 10**7  # doubles in memory that cannot be split: 400 MB
 
 FIXED = 300  # of an orbit of two masses, whatever is observed
 COPIES = 4  # of what goes into the file: by dataset and as it is written
+
+
+class Asked(Protocol):
+    """What a `Scene` says of its size."""
+
+    system: Any
+    sweep: Mapping[str, Sized]
+    section: Any
+    observe: Collection[str]
+    trajectory: Any
+    record: int
+    n_points: int
+    n_starts: int
+    shape: tuple[int, ...]
 
 
 def fixed_numbers(masses: int) -> int:
@@ -39,7 +51,7 @@ def sample_numbers(masses: int) -> int:
     return 2 * masses + 2
 
 
-def scratch_numbers(scene: "Scene") -> int:
+def scratch_numbers(scene: Asked) -> int:
     """Doubles that an orbit needs while it is computed, and that the next one uses again."""
     sought = not WITH_STATES.isdisjoint(scene.observe)
     logged = "section" in scene.observe and scene.section.kind == "impact"
@@ -47,14 +59,14 @@ def scratch_numbers(scene: "Scene") -> int:
     return scene.record * (point_numbers(masses) * sought + impact_numbers(masses) * logged)
 
 
-def written_numbers(scene: "Scene") -> int:
+def written_numbers(scene: Asked) -> int:
     """Doubles that an orbit leaves for the file, but for those of `fixed_numbers`."""
     each = point_numbers(scene.system.masses) + (not scene.system.gap_is_x1) + (scene.section.kind == "impact")
     recorded = each if "section" in scene.observe else 0
     return recorded * scene.record + sum(_trajectory_numbers(scene).values())
 
 
-def _trajectory_numbers(scene: "Scene") -> dict[str, int]:
+def _trajectory_numbers(scene: Asked) -> dict[str, int]:
     """Doubles of a trajectory by the key that they are due to: states and at most as many impacts; section points."""
     if not scene.trajectory:
         return {"trajectory.samples": 0, "trajectory.periods": 0}
@@ -66,7 +78,7 @@ def _trajectory_numbers(scene: "Scene") -> dict[str, int]:
     }
 
 
-def numbers_at_once(scene: "Scene") -> int:
+def numbers_at_once(scene: Asked) -> int:
     """Doubles in memory for the least part of a scene: an orbit, or all that start at a point to find attractors."""
     together = scene.n_starts if "attractors" in scene.observe else 1
     masses = scene.system.masses
@@ -74,7 +86,7 @@ def numbers_at_once(scene: "Scene") -> int:
     return scratch_numbers(scene) + samples + together * (fixed_numbers(masses) + COPIES * written_numbers(scene))
 
 
-def size_problems(scene: "Scene") -> list[str]:
+def size_problems(scene: Asked) -> list[str]:
     """The problems of what is too large, by the key that makes it so; nothing of that size is allocated to find out."""
     if scene.n_points > MAX_POINTS:
         size = " x ".join(str(length) for length in scene.shape)
@@ -99,7 +111,7 @@ def size_problems(scene: "Scene") -> list[str]:
     return []
 
 
-def _largest(scene: "Scene") -> tuple[str, int]:
+def _largest(scene: Asked) -> tuple[str, int]:
     """The key, and its value, that most of the memory is due to."""
     together = scene.n_starts if "attractors" in scene.observe else 1
     trajectory = _trajectory_numbers(scene)

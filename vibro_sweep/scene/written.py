@@ -4,7 +4,7 @@ import json
 from collections.abc import Iterator, Mapping, Set
 from dataclasses import fields, is_dataclass
 from itertools import islice
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -20,75 +20,22 @@ from .data import Foreign, data_from
 from .form import CountAxis
 from .starts import Start
 
-if TYPE_CHECKING:
-    from .continuation import Continuation
-    from .scene import Scene
-
-_KEYS = {dimension: key for key, dimension in START.items()}  # start_x1 -> x1
-_ORBIT = ("transient", "settle", "record")
+KEYS = {dimension: key for key, dimension in START.items()}  # start_x1 -> x1
+ORBIT = ("transient", "settle", "record")
 SHORTEST_PROGRESSION = 3
 MANY = 10_000  # values, of which each wrong one is named
-LONGEST = 100  # entries of what a scene of branches or curves holds
-
-
-def data_of(scene: "Scene") -> dict[str, Any]:
-    """The data of the YAML text of a scene; numbers that are the default are left out."""
-    data = {
-        "system": _system(scene.system, scene.sweep),
-        "sweep": {_KEYS.get(key, key): _axis(values) for key, values in scene.sweep.items()},
-        "start": _start(scene.start, scene.sweep, scene.system.masses),
-        "orbit": {name: getattr(scene, name) for name in _ORBIT if getattr(scene, name) is not None},
-        "section": {"kind": scene.section.kind},
-        "observe": sorted(scene.observe),
-    }
-    if scene.dynamics == "map":
-        data |= {"dynamics": "map", "order": scene.order}
-        data |= {} if scene.expand_at is None else {"expand_at": scene.expand_at}
-    if scene.section.kind == "impact":
-        data["section"]["stop"] = scene.section.stop
-    if scene.trajectory:
-        data["trajectory"] = {"periods": scene.trajectory.periods, "samples": scene.trajectory.samples}
-    if scene.picture:
-        data["picture"] = scene.picture
-    return {key: value for key, value in data.items() if value or key == "observe"}
-
-
-def continuation_data(scene: "Continuation", changes: Mapping[str, Any] | None = None) -> dict[str, Any]:
-    """The data of the YAML text of a scene of branches or curves, with other values as the scene has them."""
-    has = {field.name: getattr(scene, field.name) for field in fields(scene)}
-    for key, value in (changes or {}).items():
-        data = _as_data(key, value)
-        # nothing here is long: what is, is refused as a whole
-        has[key] = Foreign(value) if isinstance(data, (list, dict)) and len(data) > LONGEST else data
-    begin, origin, parameter = has["begin"], has["origin"], has["parameter"]
-    if origin == "state" and isinstance(begin, (list, tuple)):
-        begin = dict(zip(state(len(begin) // 2), begin, strict=False))
-    more = {"periods": has["periods"]} if origin in ("state", "itinerary") else {}
-    more |= {"special": has["special"]} if origin == "branches" else {}
-    more |= {"largest": has["largest"]} if origin == "sweep" and has["largest"] is not None else {}
-    if isinstance(parameter, dict):
-        parameter = {key: _listed(bounds) for key, bounds in parameter.items()}
-    body = {"from": "free" if origin == "free" else {origin: begin, **more}, "parameter": parameter}
-    if isinstance(parameter, dict) and len(parameter) == 2:
-        body["of"] = _listed(has["of"])
-    system = _system(scene.system, ()) if has["system"] is scene.system else has["system"]
-    return {"system": system, "continue": body | {"follow": _listed(has["follow"]), "depth": has["depth"]}}
-
-
-def _listed(words: object) -> object:
-    return list(words) if isinstance(words, tuple) else words
 
 
 def changed(data: dict[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
     """The data of a scene with other values, given as a `Scene` has them or as its YAML has them; None: left out."""
     result = dict(data)
     for key, value in changes.items():
-        if key in _ORBIT:
+        if key in ORBIT:
             result["orbit"] = result.get("orbit", {}) | {key: data_from(value)}
         elif value is None:
             result.pop(key, None)
         else:
-            result[key] = _as_data(key, value)
+            result[key] = as_data(key, value)
     return result
 
 
@@ -97,14 +44,14 @@ def yaml_of(data: Mapping[str, Any]) -> str:
     return "".join(f"{key}: {_flow(value)}\n" for key, value in data.items())
 
 
-def _as_data(key: str, value):
+def as_data(key: str, value):
     if isinstance(value, Oscillator):
-        return _system(value, ())
+        return system_data(value, ())
     if isinstance(value, Start):
-        return _start(value, (), len(value.state) // 2)
+        return start_data(value, (), len(value.state) // 2)
     if key == "sweep" and isinstance(value, Mapping):
         return {
-            _KEYS.get(name, name) if isinstance(name, str) else shown(name): axis_data(axis)
+            KEYS.get(name, name) if isinstance(name, str) else shown(name): axis_data(axis)
             for name, axis in value.items()
         }
     if key == "observe":
@@ -130,7 +77,7 @@ def axis_data(axis: object) -> object:
     return data
 
 
-def _system(system: Oscillator, swept) -> dict[str, Any]:
+def system_data(system: Oscillator, swept) -> dict[str, Any]:
     """Numbers and options that are not what they are if they are left out; those of lists that are swept stay."""
     if isinstance(system, Built):
         return dict(system.options)
@@ -147,7 +94,7 @@ def _system(system: Oscillator, swept) -> dict[str, Any]:
     return kind | numbers | {name: data_from(value) for name, value in system.options.items() if value is not None}
 
 
-def _axis(values: np.ndarray) -> dict[str, Any]:
+def progression(values: np.ndarray) -> dict[str, Any]:
     """The axis as data, by its ends where these give the same values, bit for bit."""
     if len(values) >= SHORTEST_PROGRESSION:
         ends = {"start": float(values[0]), "stop": float(values[-1]), "num": len(values)}
@@ -157,7 +104,7 @@ def _axis(values: np.ndarray) -> dict[str, Any]:
     return {"values": values.tolist()}
 
 
-def _start(given: Start, swept, masses: int) -> dict[str, Any]:
+def start_data(given: Start, swept, masses: int) -> dict[str, Any]:
     if given.kind == "random":
         return {"random": given.count, "seed": given.seed}
     named = zip(state(masses), start(masses), given.state, strict=True)

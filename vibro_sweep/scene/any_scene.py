@@ -1,0 +1,68 @@
+"""What scenes of orbits and of branches have in common: their YAML text, and copies with other values."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Collection
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+from typing import Any, TypeVar
+
+from vibro_sweep.checks.refusals import cut
+from vibro_sweep.model.oscillator import Oscillator
+
+from .problems import SceneError, located
+from .written import yaml_of
+from .yaml_text import YAMLTextError, lines_of, read_yaml
+
+S = TypeVar("S", bound="AnyScene")
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class AnyScene(ABC):
+    """A scene: what to compute.
+
+    source : the file that it was read from
+    given : the YAML text that it was read from; None of a copy with other values
+    """
+
+    name: str
+    system: Oscillator
+    source: Path | None = field(default=None, kw_only=True)
+    given: str | None = field(default=None, kw_only=True, init=False)
+
+    @abstractmethod
+    def data(self) -> dict[str, Any]:
+        """The data that its YAML holds; numbers that are the default are left out."""
+
+    @property
+    def text(self) -> str:
+        """The YAML text that it was read from; of another scene `to_yaml`."""
+        return self.to_yaml() if self.given is None else self.given
+
+    def to_yaml(self) -> str:
+        """The scene as YAML, from its numbers; `text` is what it was read from."""
+        return yaml_of(self.data())
+
+    @property
+    def inputs(self) -> list[Path]:
+        """The files that its run must not write to."""
+        return [self.source] if self.source else []
+
+    def _check_names(self, changes: Collection[str]) -> None:
+        """Raise SceneError for a name that is no attribute that says what is computed."""
+        about = [one.name for one in fields(AnyScene)]
+        known = ["system", *(one.name for one in fields(self) if one.name not in about)]
+        for key in changes:
+            if key not in known:
+                raise SceneError(self.name, [f"{cut(key)}: unknown; allowed here: {', '.join(known)}"])
+
+
+def parsed(text: str, name: str, source: Path | None, scene_of: Callable[[object, str], S]) -> S:
+    """The scene of a YAML text; `name` stands in messages, its stem in the scene. Raises SceneError."""
+    try:
+        scene = scene_of(read_yaml(text), name)
+    except YAMLTextError as error:
+        raise SceneError(name, [str(error)]) from None
+    except SceneError as error:
+        raise SceneError(name, located(error.problems, lines_of(text))) from None
+    vars(scene).update(given=text, source=source)  # no argument: `dataclasses.replace` would hand the text on
+    return scene
