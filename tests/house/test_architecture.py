@@ -1,6 +1,7 @@
 """Who may import whom (docs/development/architecture.md)."""
 
 import ast
+import graphlib
 
 import pytest
 from support import ROOT
@@ -66,6 +67,36 @@ def test_what_a_method_asks_of_another_room_is_imported_when_it_is_called(room, 
     for path in (HOME / room).rglob("*.py"):
         for node in ast.parse(path.read_text()).body:
             assert not (isinstance(node, ast.ImportFrom) and other in (node.module or "")), path
+
+
+def modules_of(room):
+    """module -> the modules of these rooms that it imports, and the imports that are not at its beginning."""
+    for path in sorted((HOME / room).rglob("*.py")):
+        here, body = path.relative_to(HOME.parent).with_suffix("").parts, ast.parse(path.read_text()).body
+        found, inside = set(), []
+        for top in body:
+            for node in ast.walk(top):
+                if isinstance(node, ast.ImportFrom):
+                    base = [*here[: len(here) - node.level]] if node.level else []
+                    whole = [*base, *(node.module.split(".") if node.module else [])]
+                    found |= {(*whole, alias.name) for alias in node.names} | {tuple(whole)}
+                    inside += [f"{path}:{node.lineno}"] if node is not top and whole[0] == "vibro_sweep" else []
+        yield here, found, inside
+
+
+def test_no_circles_of_imports_up_to_the_scene():
+    """None of these rooms imports one of its own modules, or another room, inside a function or for type checkers."""
+    graph = {}
+    for room in ("checks", "tables", "model", "scene"):
+        for module, found, inside in modules_of(room):
+            assert not inside
+            graph[module] = found
+    assert len(graph) > 60
+    graph = {module: {one for one in found if one in graph} for module, found in graph.items()}
+    assert [*graphlib.TopologicalSorter(graph).static_order()]  # CycleError names a circle
+    with pytest.raises(graphlib.CycleError):
+        graph["vibro_sweep", "checks", "errors"].add(("vibro_sweep", "scene", "scene"))
+        graphlib.TopologicalSorter(graph).prepare()
 
 
 def test_pictures_recompute_no_physics():

@@ -1,5 +1,6 @@
 """What scenes of orbits and of branches have in common: their YAML text, and copies with other values."""
 
+import textwrap
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Collection
 from dataclasses import dataclass, field, fields
@@ -7,6 +8,8 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from vibro_sweep.checks.refusals import cut
+from vibro_sweep.model import wording
+from vibro_sweep.model.models import DEFAULT
 from vibro_sweep.model.oscillator import Oscillator
 
 from .problems import SceneError, located
@@ -46,6 +49,16 @@ class AnyScene(ABC):
     def inputs(self) -> list[Path]:
         """The files that its run must not write to."""
         return [self.source] if self.source else []
+
+    def system_text(self, without: Collection[str]) -> str:
+        """The oscillator in a few lines, but for numbers that change."""
+        system = self.system
+        usual = {"offset": 0.0}  # which most oscillators have
+        known = {name: value for name, value in system.numbers.items() if value not in (None, usual.get(name))}
+        known |= {name: value for name, value in system.options.items() if value is not None}
+        said = wording.numbers({name: value for name, value in known.items() if name not in without})
+        kind = "" if system.model.name == DEFAULT else f"{system.model.name}: "
+        return textwrap.fill(f"  system    {kind}{said}", 88, subsequent_indent=12 * " ", break_long_words=False)
 
     def _check_names(self, changes: Collection[str]) -> None:
         """Raise SceneError for a name that is no attribute that says what is computed."""

@@ -8,7 +8,6 @@ from typing import Any
 from pydantic import ValidationError
 
 from vibro_sweep.checks.refusals import ParameterError, not_allowed
-from vibro_sweep.model import wording
 from vibro_sweep.model.oscillator import Oscillator
 from vibro_sweep.tables.coordinates import state
 
@@ -90,16 +89,15 @@ class Continuation(AnyScene):
 
     def __str__(self) -> str:
         """A few lines on what is followed."""
-        numbers = {name: value for name, value in self.system.numbers.items() if value is not None}
-        system = wording.numbers({name: value for name, value in numbers.items() if name not in self.parameter})
+        system = self.system_text(self.parameter)
         ranges = ", ".join(f"{key} = {lo:g} .. {hi:g}" for key, (lo, hi) in self.parameter.items())
         begin = "the free motion" if self.origin == "free" else f"{self.origin} {self.begin}"
         begin += f", special point {self.special}" if self.special is not None else ""
         begin += f", its {self.largest} largest windows" if self.largest is not None else ""
         if len(self.parameter) == 1:
             others = f"over {', '.join(self.follow)}, {self.depth} away at most" if self.depth else "no others"
-            return f"branches in {ranges}\n  system    {system}\n  from      {begin}\n  follow    {others}"
-        lines = [f"curves in {ranges}", f"  system    {system}", f"  from      {begin}"]
+            return f"branches in {ranges}\n{system}\n  from      {begin}\n  follow    {others}"
+        lines = [f"curves in {ranges}", system, f"  from      {begin}"]
         lines.append(f"  of        {', '.join(self.of)}")
         if self.origin in BY_BRANCHES:
             over = f", over {', '.join(self.follow)}, {self.depth} away at most" if self.depth and self.follow else ""

@@ -1,7 +1,6 @@
 """From a YAML text to a Scene: everything that a computation needs to know, checked as a whole."""
 
 import math
-import textwrap
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -11,10 +10,9 @@ import numpy as np
 from pydantic import ValidationError
 
 from vibro_sweep.checks.real import array_of
-from vibro_sweep.model import wording
 from vibro_sweep.model.built import BUILD, Built
 from vibro_sweep.model.grid import digest, grid
-from vibro_sweep.model.models import DEFAULT, MODELS
+from vibro_sweep.model.models import MODELS
 from vibro_sweep.tables.coordinates import START, start
 from vibro_sweep.tables.units import NONE, unit_in
 
@@ -190,12 +188,6 @@ class Scene(AnyScene):
 
     def __str__(self) -> str:
         """A few lines on what is computed."""
-        known = {
-            name: value for name, value in self.system.numbers.items() if value not in (None, _default(self, name))
-        }
-        known |= {name: value for name, value in self.system.options.items() if value is not None}
-        system = wording.numbers({name: value for name, value in known.items() if name not in self.sweep})
-        kind = "" if self.system.model.name == DEFAULT else f"{self.system.model.name}: "
         axes = [f"{key} = {v[0]:g} .. {v[-1]:g}{self._unit(key)} ({len(v):,} values)" for key, v in self.sweep.items()]
         state = dict(zip(start(self.system.masses), self.start.state, strict=self.start.kind != "random"))
         names = ", ".join(name.removeprefix("start_") for name in state)
@@ -211,7 +203,7 @@ class Scene(AnyScene):
             section += ", at the extreme of the free motion; with tau: 0 at the same phase of the force for all omega"
         lines = [
             " x ".join(axes) or "one point",
-            textwrap.fill(f"  system    {kind}{system}", 88, subsequent_indent=12 * " ", break_long_words=False),
+            self.system_text(self.sweep),
             f"  orbits    {starts[self.start.kind]}; {self._transient} + {self.record:,} forcing periods",
             f"  section   {section}",
             f"  observe   {', '.join(sorted(self.observe)) or 'nothing'}",
@@ -232,11 +224,6 @@ class Scene(AnyScene):
         Arrays of `sweep_shape`, read-only.
         """
         return grid(self.system, self.sweep)
-
-
-def _default(scene: Scene, name: str):
-    """The value of a number that need not be shown: an offset of 0, which most systems have."""
-    return 0.0 if name == "offset" else None
 
 
 def parse_scene(text: str, name: str = "scene", source: Path | None = None) -> Scene:
