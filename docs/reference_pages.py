@@ -13,11 +13,11 @@ from vibro_sweep import types
 from vibro_sweep.cli.commands import app
 from vibro_sweep.cli.console import EXIT_STATUSES
 from vibro_sweep.cli.examples import examples, purpose
-from vibro_sweep.model.catalogue import NUMBERS
-from vibro_sweep.model.contact_laws import STOP_NUMBERS
-from vibro_sweep.model.models import DEFAULT, MODELS
-from vibro_sweep.model.models.two_mass import PARAMETERS
-from vibro_sweep.model.wording import sentence
+from vibro_sweep.oscillator.catalogue import NUMBERS
+from vibro_sweep.oscillator.contact_laws import STOP_NUMBERS
+from vibro_sweep.oscillator.models import DEFAULT, MODELS
+from vibro_sweep.oscillator.models.two_mass import PARAMETERS
+from vibro_sweep.oscillator.wording import sentence
 from vibro_sweep.plotting import KINDS
 from vibro_sweep.scene import json_schema
 from vibro_sweep.tables.bifurcations import CODIMENSION_TWO, CURVES, TYPES, WAYS, Bifurcation

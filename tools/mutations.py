@@ -25,13 +25,13 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 RUN = str(ROOT / "tools" / "chosen_tests.py")
-ROOMS = ("analysis", "driver", "engine", "model", "tables")  # of the package
+ROOMS = ("analysis", "driver", "engine", "oscillator", "tables")  # of the package
 FIRST = 40  # tests that are collected first
 FAST, SLOW = "not slow", "slow"
 SUBJECTS = {  # folders of the slow tests of a room
     "analysis": ("orbits",), "driver": ("sweeps", "files", "commands"),
     "engine": ("accuracy", "engine", "orbits", "sweeps"),
-    "model": ("scenes", "accuracy"), "tables": ("scenes", "files"),
+    "oscillator": ("scenes", "accuracy"), "tables": ("scenes", "files"),
 }  # fmt: skip
 CHANGES = {
     "+": ["-"], "-": ["+"], "*": ["/"], "/": ["*"], "//": ["/"], "+=": ["-="], "-=": ["+="], "*=": ["/="], "/=": ["*="],

@@ -74,22 +74,22 @@ if TYPE_CHECKING:
     from vibro_sweep.driver.windows import windows
     from vibro_sweep.files.file_errors import StoreError
     from vibro_sweep.live.served_page import explore
-    from vibro_sweep.model.contact_element import Contact
-    from vibro_sweep.model.grazing import grazing
-    from vibro_sweep.model.oscillator import Oscillator, System
+    from vibro_sweep.oscillator.contact_element import Contact
+    from vibro_sweep.oscillator.grazing import grazing
+    from vibro_sweep.oscillator.oscillator import Oscillator, System
     from vibro_sweep.plotting import PlotError
     from vibro_sweep.plotting.front import plot
     from vibro_sweep.scene import SceneError, load_scene
 else:
     _HOME = {
-        "Contact": "model.contact_element",
-        "Oscillator": "model.oscillator",
+        "Contact": "oscillator.contact_element",
+        "Oscillator": "oscillator.oscillator",
         "ParameterError": "checks.refusals",
         "PlotError": "plotting",
         "RunError": "driver.compute",
         "SceneError": "scene",
         "StoreError": "files.file_errors",
-        "System": "model.oscillator",
+        "System": "oscillator.oscillator",
         "VibroSweepError": "checks.errors",
         "bifurcation_curve": "analysis.curves.bifurcation_curve",
         "born_at_grazing": "analysis.periodic.lcp",
@@ -98,7 +98,7 @@ else:
         "estimate": "driver.cost",
         "explore": "live.served_page",
         "follow_branches": "analysis.branches.generations",
-        "grazing": "model.grazing",
+        "grazing": "oscillator.grazing",
         "load": "driver.loaded_results",
         "load_scene": "scene",
         "lyapunov": "analysis.single.orbit",

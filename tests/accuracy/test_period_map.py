@@ -18,7 +18,7 @@ import vibro_sweep as vs
 from vibro_sweep.engine.free_flight import FreeFlight
 from vibro_sweep.engine.period_map import PeriodMap
 from vibro_sweep.engine.variational.parameter_sensitivity import differentiate
-from vibro_sweep.model.models.two_mass import NAMES
+from vibro_sweep.oscillator.models.two_mass import NAMES
 from vibro_sweep.tables import outcomes as status
 
 TOLERANCE = 1e-10  # of the largest entry

@@ -15,7 +15,7 @@ from support.drawn_oscillators import drawn
 import vibro_sweep as vs
 from vibro_sweep.engine.free_flight import FreeFlight
 from vibro_sweep.engine.period_map import PeriodMap
-from vibro_sweep.model.models.two_mass import NAMES
+from vibro_sweep.oscillator.models.two_mass import NAMES
 from vibro_sweep.tables import outcomes as status
 from vibro_sweep.types import Linear
 

@@ -10,7 +10,7 @@ from support.quotients import DIGITS, quotient
 
 import vibro_sweep as vs
 from vibro_sweep.engine.period_map import PeriodMap
-from vibro_sweep.model.models.two_mass import NAMES
+from vibro_sweep.oscillator.models.two_mass import NAMES
 
 
 @pytest.fixture(autouse=True)

@@ -71,9 +71,9 @@ def test_other_modules_do_not(copy):
 
 def test_modules_that_come_and_go_change_it(copy):
     seen = {now()}
-    (copy / "model" / "new.py").write_text("")
+    (copy / "oscillator" / "new.py").write_text("")
     seen.add(now())
-    (copy / "model" / "new.py").rename(copy / "analysis" / "new.py")
+    (copy / "oscillator" / "new.py").rename(copy / "analysis" / "new.py")
     seen.add(now())
     assert len(seen) == 3
 
@@ -95,7 +95,7 @@ def test_all_that_the_numbers_of_a_run_reach_is_counted():
         name = todo.pop()
         reached.add(name)
         todo |= imported(name) - reached - NUMBERLESS
-    assert "model/modes.py" in reached and "engine/variational/spectrum.py" in reached
+    assert "oscillator/modes.py" in reached and "engine/variational/spectrum.py" in reached
     assert reached <= COUNTED, reached - COUNTED
 
 

@@ -21,7 +21,7 @@ from vibro_sweep.engine.motion.ensemble import Mapping
 from vibro_sweep.engine.one_system import Engine, plan_of
 from vibro_sweep.engine.records import new_results, starts_at
 from vibro_sweep.engine.simd import jit
-from vibro_sweep.model.paper_motion import expansion_point
+from vibro_sweep.oscillator.paper_motion import expansion_point
 from vibro_sweep.tables import outcomes as status
 
 CHAOS = PAPER.replace(b=5.8)

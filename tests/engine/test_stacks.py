@@ -8,7 +8,7 @@ from support.drawn_oscillators import positive
 import vibro_sweep as vs
 from vibro_sweep.analysis.single.tables import table_of
 from vibro_sweep.engine.any_points import kind_of
-from vibro_sweep.model.grid import linears
+from vibro_sweep.oscillator.grid import linears
 
 SWEPT = {
     "one_mass": ("k", "zeta", "F", "constant", "omega", "b", "offset", "R", "tau"),

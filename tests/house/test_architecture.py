@@ -10,22 +10,22 @@ HOME = ROOT / "vibro_sweep"
 ALLOWED = {
     "checks": set(),
     "tables": {"checks"},
-    "model": {"checks", "tables"},
-    "engine": {"checks", "tables", "model"},
-    "analysis": {"checks", "tables", "model", "engine", "results", "plotting", "driver"},
-    "scene": {"checks", "tables", "model"},
-    "results": {"checks", "tables", "model", "scene"},
-    "files": {"checks", "tables", "model", "scene", "results"},
-    "driver": {"checks", "tables", "model", "engine", "analysis", "scene", "files", "results"},
-    "plotting": {"checks", "tables", "model", "files", "results"},
-    "live": {"checks", "tables", "model", "engine", "analysis", "scene", "files", "results", "driver", "plotting"},
-    "cli": {"checks", "tables", "model", "engine", "scene", "files", "results", "driver", "plotting", "live"},
-    "types": {"checks", "tables", "model", "analysis", "scene", "driver", "live"},
+    "oscillator": {"checks", "tables"},
+    "engine": {"checks", "tables", "oscillator"},
+    "analysis": {"checks", "tables", "oscillator", "engine", "results", "plotting", "driver"},
+    "scene": {"checks", "tables", "oscillator"},
+    "results": {"checks", "tables", "oscillator", "scene"},
+    "files": {"checks", "tables", "oscillator", "scene", "results"},
+    "driver": {"checks", "tables", "oscillator", "engine", "analysis", "scene", "files", "results"},
+    "plotting": {"checks", "tables", "oscillator", "files", "results"},
+    "live": {"checks", "tables", "oscillator", "engine", "analysis", "scene", "files", "results", "driver", "plotting"},
+    "cli": {"checks", "tables", "oscillator", "engine", "scene", "files", "results", "driver", "plotting", "live"},
+    "types": {"checks", "tables", "oscillator", "analysis", "scene", "driver", "live"},
 }
 # of analysis/: in this order
 FLOORS = ["single", "attractors", "periodic", "continuation", "branches", "curves", "windows"]
 EVERYWHERE = {"__version__"}
-# of model/: names, and the force of a stop, which follows from stored samples
+# of oscillator/: names, and the force of a stop, which follows from stored samples
 WITHOUT_PHYSICS = {"catalogue", "contact_laws", "stop_force", "stops"}
 
 
@@ -87,7 +87,7 @@ def modules_of(room):
 def test_no_circles_of_imports_up_to_the_scene():
     """None of these rooms imports one of its own modules, or another room, inside a function or for type checkers."""
     graph = {}
-    for room in ("checks", "tables", "model", "scene"):
+    for room in ("checks", "tables", "oscillator", "scene"):
         for module, found, inside in modules_of(room):
             assert not inside
             graph[module] = found
@@ -103,7 +103,7 @@ def test_pictures_recompute_no_physics():
     """plotting/ has names and checks of the model alone, and of files what reads: no scene is parsed there."""
     for path in (HOME / "plotting").rglob("*.py"):
         for other, node in imported(path):
-            if other == "model":
+            if other == "oscillator":
                 assert node.module.split(".")[2] in WITHOUT_PHYSICS, f"{path}:{node.lineno} imports {node.module}"
 
 

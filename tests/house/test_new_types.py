@@ -64,9 +64,9 @@ PENDULUM = '''"""A pendulum that strikes walls: one number, its length."""
 
 import numpy as np
 
-from vibro_sweep.model.linear import Linear, contact
-from vibro_sweep.model.models.declaration import CONTACT, OF_STOPS, UNITS, WHICH_STOPS, Model
-from vibro_sweep.model.stacks import matrix
+from vibro_sweep.oscillator.linear import Linear, contact
+from vibro_sweep.oscillator.models.declaration import CONTACT, OF_STOPS, UNITS, WHICH_STOPS, Model
+from vibro_sweep.oscillator.stacks import matrix
 from vibro_sweep.tables.quantity import POSITIVE, Parameter
 
 
@@ -107,7 +107,7 @@ def with_edits(folder, edits, program, files=()):
 
 def test_a_parameter_is_a_row_and_a_formula(tmp_path):
     """A spring from the first mass to the ground."""
-    table, last = "model/models/two_mass.py", '              free_motion=True, optional=True, follows="mu_k"),\n'
+    table, last = "oscillator/models/two_mass.py", '              free_motion=True, optional=True, follows="mu_k"),\n'
     row = '    Parameter("mu_g", "third spring", "", "g", "1", NOT_NEGATIVE, default=0.0, free_motion=True),\n'
     edits = [
         (table, last, last + row),
@@ -129,7 +129,7 @@ def test_an_observable_is_a_row_and_a_line(tmp_path):
 
 
 def test_a_model_is_one_file(tmp_path):
-    error, same = with_edits(tmp_path, [], MODEL, [("model/models/pendulum.py", PENDULUM)])
+    error, same = with_edits(tmp_path, [], MODEL, [("oscillator/models/pendulum.py", PENDULUM)])
     assert error < 1e-9 and same
 
 

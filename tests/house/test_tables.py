@@ -12,9 +12,9 @@ import vibro_sweep as vs
 from vibro_sweep.driver.blocks import plan_of
 from vibro_sweep.engine.records import POINT, new_results, result_of
 from vibro_sweep.engine.simd.kernel_cache import ENGINE, SHARED
-from vibro_sweep.model.catalogue import OF_A_SYSTEM
-from vibro_sweep.model.models import MODELS
-from vibro_sweep.model.models.two_mass import NAMES
+from vibro_sweep.oscillator.catalogue import OF_A_SYSTEM
+from vibro_sweep.oscillator.models import MODELS
+from vibro_sweep.oscillator.models.two_mass import NAMES
 from vibro_sweep.scene import resolved_numbers
 from vibro_sweep.tables.coordinates import MOST_MASSES
 from vibro_sweep.tables.observables import DIMENSIONS, VARIABLES

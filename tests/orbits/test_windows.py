@@ -10,7 +10,7 @@ import vibro_sweep as vs
 from vibro_sweep.analysis.windows.job import Job, window_of
 from vibro_sweep.driver.windows import rows_in
 from vibro_sweep.files.reading import sweep_in
-from vibro_sweep.model.window_families import families
+from vibro_sweep.oscillator.window_families import families
 from vibro_sweep.tables.outcomes import REASONS
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 import vibro_sweep as vs
 from support.drawn_oscillators import positive
-from vibro_sweep.model.linear import amplitudes, family_of, static_state
+from vibro_sweep.oscillator.linear import amplitudes, family_of, static_state
 from vibro_sweep.types import PeriodicOrbit
 
 MODELS = ("two_mass", "one_mass", "ball_in_cavity", "chain", "linear")

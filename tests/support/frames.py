@@ -1,8 +1,8 @@
 """The frame of tangent vectors of an oscillator."""
 
-from vibro_sweep.model.contact import contact_coordinates, natural_coordinates
-from vibro_sweep.model.frame import Frame, frame_of
-from vibro_sweep.model.linear import stacked
+from vibro_sweep.engine.coordinates.contact import contact_coordinates, natural_coordinates
+from vibro_sweep.engine.coordinates.frame import Frame, frame_of
+from vibro_sweep.oscillator.linear import stacked
 
 
 def frame_of_one(system) -> Frame:

@@ -12,7 +12,7 @@ import numpy as np
 import vibro_sweep as vs
 from support.drawn_oscillators import positive
 from support.searching import Report, new_report
-from vibro_sweep.model.linear import amplitudes, static_state
+from vibro_sweep.oscillator.linear import amplitudes, static_state
 
 MOST_PERIODS = 20_000  # of one simulation
 INSIDE = (2e-3, 2e-2, 0.1, 0.5, 1.0)  # from the end of a piece to the point before it

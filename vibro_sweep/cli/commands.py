@@ -268,8 +268,8 @@ def models(
 ):
     """What oscillators and laws of contact there are; of one the equations, a sketch, its numbers."""
     from vibro_sweep.checks.refusals import ParameterError
-    from vibro_sweep.model.contact_laws import LAWS
-    from vibro_sweep.model.models import model_named
+    from vibro_sweep.oscillator.contact_laws import LAWS
+    from vibro_sweep.oscillator.models import model_named
 
     from .summaries import law_text, model_list, model_text
 

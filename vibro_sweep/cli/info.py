@@ -16,7 +16,7 @@ from vibro_sweep.files.file_errors import StoreError
 from vibro_sweep.files.opening import open_file
 from vibro_sweep.files.reading import open_whole
 from vibro_sweep.files.verifying import REMEDY, damage
-from vibro_sweep.model.contact_laws.compliant import LAW as COMPLIANT
+from vibro_sweep.oscillator.contact_laws.compliant import LAW as COMPLIANT
 from vibro_sweep.results import ragged_dataset
 from vibro_sweep.results.sweep_dataset import Sweep
 from vibro_sweep.tables.exponents import CERTAIN, periods_to_go, sign_of

@@ -5,8 +5,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from vibro_sweep.model.window_families import families
-from vibro_sweep.model.wording import without_rounding
+from vibro_sweep.oscillator.window_families import families
+from vibro_sweep.oscillator.wording import without_rounding
 from vibro_sweep.tables.bifurcations import CODIMENSION_TWO, CRITICALITIES, CURVES, KINDS, TYPES
 from vibro_sweep.tables.file_columns import UNVISITED
 from vibro_sweep.tables.outcomes import EDGES, REASONS

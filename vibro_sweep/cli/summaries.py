@@ -5,13 +5,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vibro_sweep.model.contact_laws import LAWS
-from vibro_sweep.model.contact_laws.contact_law import ContactLaw
-from vibro_sweep.model.grazing import Grazing, grazing
-from vibro_sweep.model.linear import static_state
-from vibro_sweep.model.models import MODELS
-from vibro_sweep.model.models.declaration import Model, Option
-from vibro_sweep.model.oscillator import Oscillator
+from vibro_sweep.oscillator.contact_laws import LAWS
+from vibro_sweep.oscillator.contact_laws.contact_law import ContactLaw
+from vibro_sweep.oscillator.grazing import Grazing, grazing
+from vibro_sweep.oscillator.linear import static_state
+from vibro_sweep.oscillator.models import MODELS
+from vibro_sweep.oscillator.models.declaration import Model, Option
+from vibro_sweep.oscillator.oscillator import Oscillator
 from vibro_sweep.tables.coordinates import state as names
 from vibro_sweep.tables.outcomes import STATUSES
 from vibro_sweep.tables.quantity import Parameter

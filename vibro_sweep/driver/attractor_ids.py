@@ -12,7 +12,7 @@ import numpy as np
 
 from vibro_sweep.analysis.attractors.following import Follower, known
 from vibro_sweep.analysis.attractors.grouping import BAD, NOT_SETTLED, group, share
-from vibro_sweep.model.grid import grid
+from vibro_sweep.oscillator.grid import grid
 from vibro_sweep.results.boxes import Box, boxes
 from vibro_sweep.scene import Scene
 

@@ -11,8 +11,8 @@ from vibro_sweep.driver.code_hash import code_hash
 from vibro_sweep.engine import points
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.variational.spectrum import BATCHES
-from vibro_sweep.model.grid import grid
-from vibro_sweep.model.oscillator import Oscillator
+from vibro_sweep.oscillator.grid import grid
+from vibro_sweep.oscillator.oscillator import Oscillator
 from vibro_sweep.results.boxes import boxes
 from vibro_sweep.results.layout import quantities
 from vibro_sweep.scene import Scene

@@ -22,7 +22,7 @@ HOME = Path(__file__).parents[1]
 SOURCES = (
     "checks",
     "tables",
-    "model",
+    "oscillator",
     "engine",
     "analysis",
     "scene",

@@ -18,9 +18,9 @@ from vibro_sweep.engine.any_points import grazing_points
 from vibro_sweep.engine.motion.ensemble import Mapping
 from vibro_sweep.engine.records import Kind, new_results, starts_after, starts_at
 from vibro_sweep.engine.simd.lanes import LANES
-from vibro_sweep.model.grid import linears
-from vibro_sweep.model.own_time import in_own_time, in_users_time, with_velocities
-from vibro_sweep.model.paper_motion import expansion_point
+from vibro_sweep.oscillator.grid import linears
+from vibro_sweep.oscillator.own_time import in_own_time, in_users_time, with_velocities
+from vibro_sweep.oscillator.paper_motion import expansion_point
 from vibro_sweep.tables import outcomes as status
 from vibro_sweep.tables.coordinates import state
 from vibro_sweep.tables.observables import GAP

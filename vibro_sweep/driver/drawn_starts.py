@@ -3,8 +3,8 @@
 import numpy as np
 
 from vibro_sweep.driver.blocks import Block
-from vibro_sweep.model.grid import linears
-from vibro_sweep.model.linear import rest_state
+from vibro_sweep.oscillator.grid import linears
+from vibro_sweep.oscillator.linear import rest_state
 from vibro_sweep.tables.coordinates import start
 
 ATTEMPTS = 100  # at a state with the gap between the stops

@@ -7,8 +7,8 @@ from vibro_sweep.engine import points
 from vibro_sweep.engine.records import Kind
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.tables.flight import WIDTH
-from vibro_sweep.model.grid import linears
-from vibro_sweep.model.stacks import dot, solved
+from vibro_sweep.oscillator.grid import linears
+from vibro_sweep.oscillator.stacks import dot, solved
 from vibro_sweep.tables import outcomes as status
 from vibro_sweep.tables.coordinates import state
 

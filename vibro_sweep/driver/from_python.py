@@ -15,8 +15,8 @@ from vibro_sweep.driver.any_file import open
 from vibro_sweep.driver.provenance import provenance
 from vibro_sweep.driver.sweep import check_how, fill, run_sweep
 from vibro_sweep.files.subject import about_run
-from vibro_sweep.model.built import Built
-from vibro_sweep.model.oscillator import Oscillator, checked_system
+from vibro_sweep.oscillator.built import Built
+from vibro_sweep.oscillator.oscillator import Oscillator, checked_system
 from vibro_sweep.results import layout
 from vibro_sweep.results.in_memory import InMemory
 from vibro_sweep.scene import Section, Start, Trajectory, scene_of

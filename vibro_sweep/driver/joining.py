@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from vibro_sweep.model.oscillator import Oscillator
+from vibro_sweep.oscillator.oscillator import Oscillator
 from vibro_sweep.tables.coordinates import state
 from vibro_sweep.tables.file_columns import OF_FIRST, OF_PARAMETER, columns
 from vibro_sweep.tables.quantity import Quantity

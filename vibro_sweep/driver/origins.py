@@ -28,7 +28,7 @@ from vibro_sweep.driver.source_file import SourceError, run_id_of
 from vibro_sweep.driver.windows import rows_in, search_of
 from vibro_sweep.files.pieces import Pieces
 from vibro_sweep.files.reading import sweep_in
-from vibro_sweep.model.oscillator import Oscillator
+from vibro_sweep.oscillator.oscillator import Oscillator
 from vibro_sweep.results.sweep_dataset import Sweep
 from vibro_sweep.scene import Continuation, parse_continuation, parse_scene
 from vibro_sweep.tables.bifurcations import CURVES, WAYS

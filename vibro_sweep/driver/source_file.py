@@ -13,7 +13,7 @@ from vibro_sweep.checks.errors import VibroSweepError
 from vibro_sweep.checks.file_names import FileError
 from vibro_sweep.files.file_errors import StoreError
 from vibro_sweep.files.reading import sweep_in, warn_where_incomplete
-from vibro_sweep.model.built import BUILD
+from vibro_sweep.oscillator.built import BUILD
 from vibro_sweep.results.sweep_dataset import Sweep
 from vibro_sweep.scene import Continuation, parse_scene
 from vibro_sweep.tables.file_columns import SWEEP

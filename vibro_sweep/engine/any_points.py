@@ -5,11 +5,8 @@ Of those that differ in their stops alone one is worked out.
 
 import numpy as np
 
-from vibro_sweep.engine.records import Kind, point_of
-from vibro_sweep.engine.tables import cells
-from vibro_sweep.engine.tables.flight import WIDTH
-from vibro_sweep.model.confinement import confinement_of
-from vibro_sweep.model.contact import (
+from vibro_sweep.engine.coordinates.confinement import confinement_of
+from vibro_sweep.engine.coordinates.contact import (
     ContactCoordinates,
     by_mass,
     contact_coordinates,
@@ -21,13 +18,16 @@ from vibro_sweep.model.contact import (
     natural_coordinates,
     origin_of,
 )
-from vibro_sweep.model.exact import exact_motion
-from vibro_sweep.model.exponentials import gap_exponentials
-from vibro_sweep.model.frame import frame_of
-from vibro_sweep.model.linear import MOTION, Linear, taken
-from vibro_sweep.model.sensitivity import grazing_state
-from vibro_sweep.model.stacks import dot
-from vibro_sweep.model.steady import gap_responses, steady_amplitudes
+from vibro_sweep.engine.coordinates.exact import exact_motion
+from vibro_sweep.engine.coordinates.exponentials import gap_exponentials
+from vibro_sweep.engine.coordinates.frame import frame_of
+from vibro_sweep.engine.records import Kind, point_of
+from vibro_sweep.engine.tables import cells
+from vibro_sweep.engine.tables.flight import WIDTH
+from vibro_sweep.oscillator.linear import MOTION, Linear, taken
+from vibro_sweep.oscillator.sensitivity import grazing_state
+from vibro_sweep.oscillator.stacks import dot
+from vibro_sweep.oscillator.steady import gap_responses, steady_amplitudes
 
 APART = 8.0  # a rate over that of the force from which on tables are computed in twice the digits
 

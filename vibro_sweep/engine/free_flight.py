@@ -12,8 +12,8 @@ from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.engine.motion.free import find_contacts, find_extremes
 from vibro_sweep.engine.one_system import Engine
 from vibro_sweep.engine.variational.propagator import fly, new_workspace
-from vibro_sweep.model.oscillator import Oscillator, checked_system
-from vibro_sweep.model.sensitivity import motion
+from vibro_sweep.oscillator.oscillator import Oscillator, checked_system
+from vibro_sweep.oscillator.sensitivity import motion
 
 
 class Contacts(NamedTuple):

@@ -9,6 +9,9 @@ from vibro_sweep.checks.refusals import ParameterError
 from vibro_sweep.engine import points
 from vibro_sweep.engine.any_points import any_points, kind_of
 from vibro_sweep.engine.compliant.law import LOGGED
+from vibro_sweep.engine.coordinates.contact import is_far
+from vibro_sweep.engine.coordinates.invariant_planes import moved
+from vibro_sweep.engine.coordinates.metric import ROUNDING
 from vibro_sweep.engine.motion import orbits
 from vibro_sweep.engine.point_tables import ON_STOP
 from vibro_sweep.engine.records import PAPER, POINT, Kind, new_results, starts_at
@@ -16,15 +19,12 @@ from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.tables import cells
 from vibro_sweep.engine.tables.flight import Flight
 from vibro_sweep.engine.variational.spectrum import BATCHES
-from vibro_sweep.model.contact import is_far
-from vibro_sweep.model.invariant_planes import moved
-from vibro_sweep.model.linear import stacked
-from vibro_sweep.model.metric import ROUNDING
-from vibro_sweep.model.models.two_mass import NAMES
-from vibro_sweep.model.modes import modes
-from vibro_sweep.model.oscillator import System, in_closed_form
-from vibro_sweep.model.own_time import in_own_time, with_velocities
-from vibro_sweep.model.stops import has_compliant
+from vibro_sweep.oscillator.linear import stacked
+from vibro_sweep.oscillator.models.two_mass import NAMES
+from vibro_sweep.oscillator.modes import modes
+from vibro_sweep.oscillator.oscillator import System, in_closed_form
+from vibro_sweep.oscillator.own_time import in_own_time, with_velocities
+from vibro_sweep.oscillator.stops import has_compliant
 from vibro_sweep.tables import outcomes as status
 from vibro_sweep.tables.coordinates import checked_state
 

@@ -25,10 +25,10 @@ from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.variational.grazing_map import Expansion, iterate
 from vibro_sweep.engine.variational.parameter_sensitivity import Equations, differentiate
 from vibro_sweep.engine.variational.propagator import new_workspace
-from vibro_sweep.model.linear import Linear, gap_response, rigid_family_of
-from vibro_sweep.model.models.two_mass import NAMES
-from vibro_sweep.model.oscillator import Oscillator, System, checked_system
-from vibro_sweep.model.sensitivity import grazing_state, grazing_state_slopes, motion, motion_slopes
+from vibro_sweep.oscillator.linear import Linear, gap_response, rigid_family_of
+from vibro_sweep.oscillator.models.two_mass import NAMES
+from vibro_sweep.oscillator.oscillator import Oscillator, System, checked_system
+from vibro_sweep.oscillator.sensitivity import grazing_state, grazing_state_slopes, motion, motion_slopes
 from vibro_sweep.tables import outcomes as status
 
 

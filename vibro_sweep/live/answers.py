@@ -15,7 +15,7 @@ from vibro_sweep.live.requests import ClickedOrbit, OfOneOrbit, Open, Save, Swee
 from vibro_sweep.live.saved_view import hdf5_of, python_of, svg_of
 from vibro_sweep.live.views import base_of, height_of, needed, scene_of_view, view_of
 from vibro_sweep.live.window_ends import window_message
-from vibro_sweep.model.grazing import grazing
+from vibro_sweep.oscillator.grazing import grazing
 from vibro_sweep.scene import Scene
 
 CONTENTS = {"hdf5": hdf5_of, "svg": svg_of}

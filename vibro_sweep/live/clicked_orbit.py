@@ -11,7 +11,7 @@ from vibro_sweep.driver.block_columns import whole_block
 from vibro_sweep.driver.compute import compute
 from vibro_sweep.live.requests import View
 from vibro_sweep.live.views import scene_of_view
-from vibro_sweep.model.oscillator import Oscillator
+from vibro_sweep.oscillator.oscillator import Oscillator
 from vibro_sweep.scene import Scene, Section
 from vibro_sweep.tables.coordinates import state
 from vibro_sweep.tables.outcomes import is_valid, status_of

@@ -7,12 +7,12 @@ import numpy as np
 
 from vibro_sweep.live.requests import View
 from vibro_sweep.live.views import SPEEDS, heights
-from vibro_sweep.model.catalogue import BY_NAME
-from vibro_sweep.model.checked_numbers import range_of
-from vibro_sweep.model.contact_laws.compliant import LAW as COMPLIANT
-from vibro_sweep.model.models import MODELS
-from vibro_sweep.model.oscillator import Oscillator
-from vibro_sweep.model.stops import stop_of
+from vibro_sweep.oscillator.catalogue import BY_NAME
+from vibro_sweep.oscillator.checked_numbers import range_of
+from vibro_sweep.oscillator.contact_laws.compliant import LAW as COMPLIANT
+from vibro_sweep.oscillator.models import MODELS
+from vibro_sweep.oscillator.oscillator import Oscillator
+from vibro_sweep.oscillator.stops import stop_of
 from vibro_sweep.plotting.style import CHAOS, EXPONENTS, LONGER, LONGEST, NO_PERIOD, PERIODS, density_colours
 from vibro_sweep.scene import Scene
 from vibro_sweep.tables.exponents import CERTAIN

@@ -11,7 +11,7 @@ from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.live.extra import needed
 from vibro_sweep.live.presets import described_sweep, scene_of_results, scene_to_explore
 from vibro_sweep.live.views import COLUMNS, span
-from vibro_sweep.model.oscillator import Oscillator
+from vibro_sweep.oscillator.oscillator import Oscillator
 from vibro_sweep.scene import Scene, scene_of
 from vibro_sweep.scene.written import changed
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.live.requests import View
-from vibro_sweep.model.oscillator import Oscillator
+from vibro_sweep.oscillator.oscillator import Oscillator
 from vibro_sweep.scene import Scene, scene_of
 from vibro_sweep.scene.written import system_data
 from vibro_sweep.tables.coordinates import state

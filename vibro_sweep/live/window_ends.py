@@ -14,7 +14,7 @@ from vibro_sweep.analysis.windows.job import Job, window_of
 from vibro_sweep.live.clicked_orbit import Settled
 from vibro_sweep.live.requests import View
 from vibro_sweep.live.views import SPEEDS, height_of
-from vibro_sweep.model.checked_numbers import range_of
+from vibro_sweep.oscillator.checked_numbers import range_of
 from vibro_sweep.tables.bifurcations import BY_NAME, GRAZES
 from vibro_sweep.tables.coordinates import state
 from vibro_sweep.tables.exponents import CERTAIN

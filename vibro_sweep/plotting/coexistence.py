@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from matplotlib.collections import LineCollection, PolyCollection
 
-from vibro_sweep.model.catalogue import BY_NAME
+from vibro_sweep.oscillator.catalogue import BY_NAME
 from vibro_sweep.plotting.families import KINDS, MARKERS, kind, named
 from vibro_sweep.plotting.labels import arrange, legend_below, overlap
 from vibro_sweep.plotting.style import at_section, edges, marked, type_size

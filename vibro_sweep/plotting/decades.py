@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib.colors import LogNorm, Normalize, SymLogNorm
 from matplotlib.ticker import FixedLocator, NullLocator
 
-from vibro_sweep.model.contact_laws import OTHER_STOPS
+from vibro_sweep.oscillator.contact_laws import OTHER_STOPS
 
 SPAN = 10.0  # the largest of the numbers over their lower quartile, from which on they span decades
 FEW = 1.5  # decades of an axis on which 2 and 5 are named as well

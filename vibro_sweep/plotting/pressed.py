@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from vibro_sweep.model.stop_force import force_of
+from vibro_sweep.oscillator.stop_force import force_of
 from vibro_sweep.plotting.paths import Path
 from vibro_sweep.plotting.style import IMPACT
 from vibro_sweep.plotting.sweep_result import Point, Result

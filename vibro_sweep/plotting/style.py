@@ -7,7 +7,7 @@ from matplotlib.colors import ListedColormap, to_rgba
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from vibro_sweep.model.catalogue import BY_NAME, NUMBERS
+from vibro_sweep.oscillator.catalogue import BY_NAME, NUMBERS
 from vibro_sweep.tables.bifurcations import TYPES
 from vibro_sweep.tables.units import shown_unit, unit_in
 

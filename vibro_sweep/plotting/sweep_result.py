@@ -9,8 +9,8 @@ from matplotlib.figure import Figure
 from vibro_sweep.checks.real import number_of
 from vibro_sweep.checks.refusals import not_allowed, shown
 from vibro_sweep.files.file_errors import StoreError
-from vibro_sweep.model.catalogue import OF_A_SYSTEM
-from vibro_sweep.model.stops import NUMBERS, compliance_of
+from vibro_sweep.oscillator.catalogue import OF_A_SYSTEM
+from vibro_sweep.oscillator.stops import NUMBERS, compliance_of
 from vibro_sweep.plotting.panel import Panel
 from vibro_sweep.plotting.plot_options import PlotOptions
 from vibro_sweep.plotting.settings import settings_of

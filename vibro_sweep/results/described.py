@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from vibro_sweep.model.wording import sentence
+from vibro_sweep.oscillator.wording import sentence
 from vibro_sweep.tables.quantity import Observable, Quantity
 
 

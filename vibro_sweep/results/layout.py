@@ -6,8 +6,8 @@ from collections.abc import Sequence
 import numpy as np
 import xarray
 
-from vibro_sweep.model.built import stored_names
-from vibro_sweep.model.catalogue import AXES
+from vibro_sweep.oscillator.built import stored_names
+from vibro_sweep.oscillator.catalogue import AXES
 from vibro_sweep.results.described import described
 from vibro_sweep.scene import Scene, resolved_numbers
 from vibro_sweep.tables.exponents import RUNNING, periods_read

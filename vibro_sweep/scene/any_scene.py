@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from vibro_sweep.checks.refusals import cut
-from vibro_sweep.model import wording
-from vibro_sweep.model.models import DEFAULT
-from vibro_sweep.model.oscillator import Oscillator
+from vibro_sweep.oscillator import wording
+from vibro_sweep.oscillator.models import DEFAULT
+from vibro_sweep.oscillator.oscillator import Oscillator
 
 from .problems import SceneError, located
 from .written import yaml_of

@@ -4,9 +4,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from vibro_sweep.model.contact_laws.compliant import LAW as COMPLIANT
-from vibro_sweep.model.oscillator import Oscillator
-from vibro_sweep.model.stops import DAMPER_ALONE, why_rigid
+from vibro_sweep.oscillator.contact_laws.compliant import LAW as COMPLIANT
+from vibro_sweep.oscillator.oscillator import Oscillator
+from vibro_sweep.oscillator.stops import DAMPER_ALONE, why_rigid
 from vibro_sweep.tables.exponents import LEAST_RECORD
 from vibro_sweep.tables.observables import WORDS
 

@@ -8,7 +8,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from vibro_sweep.checks.refusals import ParameterError, not_allowed
-from vibro_sweep.model.oscillator import Oscillator
+from vibro_sweep.oscillator.oscillator import Oscillator
 from vibro_sweep.tables.coordinates import state
 
 from .any_scene import AnyScene, parsed

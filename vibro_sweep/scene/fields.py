@@ -4,7 +4,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, Field, Tag
 
-from vibro_sweep.model.models.declaration import STOPS
+from vibro_sweep.oscillator.models.declaration import STOPS
 from vibro_sweep.tables.parameters import PHASE
 from vibro_sweep.tables.quantity import Parameter
 

@@ -12,9 +12,9 @@ from pydantic import ConfigDict, Discriminator, Field, Strict, Tag, WithJsonSche
 
 from vibro_sweep.checks.arguments import MAX_COUNT
 from vibro_sweep.checks.meant import SYNONYMS
-from vibro_sweep.model.built import Built
-from vibro_sweep.model.models import DEFAULT, MODELS
-from vibro_sweep.model.models.declaration import Model
+from vibro_sweep.oscillator.built import Built
+from vibro_sweep.oscillator.models import DEFAULT, MODELS
+from vibro_sweep.oscillator.models.declaration import Model
 from vibro_sweep.tables.coordinates import coordinates
 from vibro_sweep.tables.observables import WORDS
 from vibro_sweep.tables.picture_kinds import PICTURES

@@ -11,15 +11,15 @@ from typing import Any
 
 import numpy as np
 
-from vibro_sweep.model.built import Built, sizes_of, stored_names, stored_of
-from vibro_sweep.model.grid import grid, linears
-from vibro_sweep.model.linear import Linear
-from vibro_sweep.model.models import DEFAULT
-from vibro_sweep.model.models.declaration import UNITS
-from vibro_sweep.model.oscillator import in_closed_form
-from vibro_sweep.model.paper_motion import grazing_clearance
-from vibro_sweep.model.stacks import dot, modulus
-from vibro_sweep.model.steady import gap_responses, static_states, steady_amplitudes
+from vibro_sweep.oscillator.built import Built, sizes_of, stored_names, stored_of
+from vibro_sweep.oscillator.grid import grid, linears
+from vibro_sweep.oscillator.linear import Linear
+from vibro_sweep.oscillator.models import DEFAULT
+from vibro_sweep.oscillator.models.declaration import UNITS
+from vibro_sweep.oscillator.oscillator import in_closed_form
+from vibro_sweep.oscillator.paper_motion import grazing_clearance
+from vibro_sweep.oscillator.stacks import dot, modulus
+from vibro_sweep.oscillator.steady import gap_responses, static_states, steady_amplitudes
 from vibro_sweep.scene.scene import Scene
 from vibro_sweep.tables.coordinates import start
 

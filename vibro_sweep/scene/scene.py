@@ -10,9 +10,9 @@ import numpy as np
 from pydantic import ValidationError
 
 from vibro_sweep.checks.real import array_of
-from vibro_sweep.model.built import BUILD, Built
-from vibro_sweep.model.grid import digest, grid
-from vibro_sweep.model.models import MODELS
+from vibro_sweep.oscillator.built import BUILD, Built
+from vibro_sweep.oscillator.grid import digest, grid
+from vibro_sweep.oscillator.models import MODELS
 from vibro_sweep.tables.coordinates import START, start
 from vibro_sweep.tables.units import NONE, unit_in
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from vibro_sweep.checks.meant import meant
 from vibro_sweep.checks.real import number_of
-from vibro_sweep.model.models import DEFAULT, MODELS
+from vibro_sweep.oscillator.models import DEFAULT, MODELS
 
 PHYSICAL = ("M1", "M2", "K1", "K2", "C1", "C2", "P1", "P2", "Omega", "B", "B0")
 NONDIMENSIONAL = (

@@ -4,8 +4,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from vibro_sweep.model.built import Built
-from vibro_sweep.model.oscillator import Oscillator
+from vibro_sweep.oscillator.built import Built
+from vibro_sweep.oscillator.oscillator import Oscillator
 from vibro_sweep.tables.coordinates import START, state
 
 from .fields import Form

@@ -4,10 +4,10 @@ import numpy as np
 
 from vibro_sweep.checks.meant import did_you_mean
 from vibro_sweep.checks.refusals import ParameterError
-from vibro_sweep.model.checked_numbers import check_value
-from vibro_sweep.model.models import DEFAULT, MODELS
-from vibro_sweep.model.models.declaration import OF_STOPS, entries
-from vibro_sweep.model.oscillator import Oscillator, System
+from vibro_sweep.oscillator.checked_numbers import check_value
+from vibro_sweep.oscillator.models import DEFAULT, MODELS
+from vibro_sweep.oscillator.models.declaration import OF_STOPS, entries
+from vibro_sweep.oscillator.oscillator import Oscillator, System
 from vibro_sweep.tables.coordinates import START
 from vibro_sweep.tables.quantity import Parameter
 

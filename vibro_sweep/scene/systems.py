@@ -6,9 +6,9 @@ from typing import Any, Literal
 from pydantic import ConfigDict, Field, create_model
 from pydantic.config import JsonDict
 
-from vibro_sweep.model.models import DEFAULT, MODELS
-from vibro_sweep.model.models.declaration import OF_STOPS, WHICH_STOPS, Option
-from vibro_sweep.model.physical import PHYSICAL
+from vibro_sweep.oscillator.models import DEFAULT, MODELS
+from vibro_sweep.oscillator.models.declaration import OF_STOPS, WHICH_STOPS, Option
+from vibro_sweep.oscillator.physical import PHYSICAL
 from vibro_sweep.tables.parameters import PHASE
 from vibro_sweep.tables.quantity import POSITIVE, Parameter
 

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from vibro_sweep.checks.refusals import shown
-from vibro_sweep.model.built import Built
-from vibro_sweep.model.models import DEFAULT
-from vibro_sweep.model.oscillator import Oscillator, checked_system
+from vibro_sweep.oscillator.built import Built
+from vibro_sweep.oscillator.models import DEFAULT
+from vibro_sweep.oscillator.oscillator import Oscillator, checked_system
 from vibro_sweep.tables.coordinates import START, start, state
 from vibro_sweep.tables.observables import WORDS
 

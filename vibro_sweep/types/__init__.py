@@ -18,10 +18,10 @@ from vibro_sweep.analysis.windows.window import Window, Windows
 from vibro_sweep.driver.cost import Estimate
 from vibro_sweep.driver.sweep import RunReport
 from vibro_sweep.live.served_page import LivePage
-from vibro_sweep.model.grazing import Grazing
-from vibro_sweep.model.linear import Family, Linear
-from vibro_sweep.model.modes import Modes
-from vibro_sweep.model.window_families import WindowFamily
+from vibro_sweep.oscillator.grazing import Grazing
+from vibro_sweep.oscillator.linear import Family, Linear
+from vibro_sweep.oscillator.modes import Modes
+from vibro_sweep.oscillator.window_families import WindowFamily
 from vibro_sweep.scene import Continuation, Scene, Section, Start, Trajectory
 from vibro_sweep.tables.picture_kinds import Plottable
 from vibro_sweep.tables.units import Units

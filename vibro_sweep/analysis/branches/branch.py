@@ -37,7 +37,7 @@ from vibro_sweep.checks.arguments import (
 )
 from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.checks.refusals import not_allowed
-from vibro_sweep.model.linear import family_of
+from vibro_sweep.oscillator.linear import family_of
 
 if TYPE_CHECKING:
     import xarray

@@ -9,7 +9,7 @@ from vibro_sweep.analysis.continuation.recorded import Rows
 from vibro_sweep.analysis.periodic.orbit_multipliers import multipliers_of, squared
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses.flow import flow
-from vibro_sweep.model.linear import Linear, forcing_period
+from vibro_sweep.oscillator.linear import Linear, forcing_period
 from vibro_sweep.tables.coordinates import state
 
 if TYPE_CHECKING:

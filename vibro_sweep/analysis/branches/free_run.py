@@ -19,7 +19,7 @@ from vibro_sweep.analysis.continuation.solution_curve import LONGEST_STEP, SHORT
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.analysis.periodic.steady_gap import steady_gap
 from vibro_sweep.engine.continuation.branch_tests import PASSED
-from vibro_sweep.model.steady import dynamic_stiffness
+from vibro_sweep.oscillator.steady import dynamic_stiffness
 
 SHARE = 0.25  # by which Z may change in a step, relative to itself
 SHORTEST = 1e-7  # step: an undamped mode that is not driven in its resonance does not stop the run

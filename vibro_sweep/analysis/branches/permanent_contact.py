@@ -13,7 +13,7 @@ from scipy.optimize import brentq
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.analysis.periodic.steady_gap import SteadyGap, steady_gap
 from vibro_sweep.engine.impulses.free_modes import ResonanceError
-from vibro_sweep.model.linear import Linear
+from vibro_sweep.oscillator.linear import Linear
 
 SHORT = 1e-3  # of 1/omega: the flight between two contacts of an orbit that is about to leave its stop no more
 STEPS = np.geomspace(1e-12, 1e-2, 21)  # of the parameter's unit, from the last orbit that leaves its stop

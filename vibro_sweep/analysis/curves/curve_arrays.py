@@ -19,7 +19,7 @@ from vibro_sweep.analysis.curves.curve_start import slow_impacts
 from vibro_sweep.analysis.periodic.periodic_orbit import orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation.problem import GRAZE
-from vibro_sweep.model.linear import Linear, gap_response
+from vibro_sweep.oscillator.linear import Linear, gap_response
 from vibro_sweep.tables.bifurcations import CODES_OF_CURVES, CODIMENSION_TWO, CURVES
 from vibro_sweep.tables.coordinates import state
 

@@ -17,7 +17,7 @@ from vibro_sweep.engine.continuation.problem import FLIP, FOLD, GRAZE, STICK, TO
 from vibro_sweep.engine.continuation.workspace import THETA
 from vibro_sweep.engine.impulses.flights import free_part, new_workspace
 from vibro_sweep.engine.impulses.flow import Flow, contact_coordinates, flow, steady_motion
-from vibro_sweep.model.linear import Linear, forcing_period
+from vibro_sweep.oscillator.linear import Linear, forcing_period
 from vibro_sweep.tables.coordinates import state
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from vibro_sweep.engine.continuation.lasting import PER_TIME_CONSTANT
 from vibro_sweep.engine.continuation.lasting_map import MOST_HALVINGS
 from vibro_sweep.engine.continuation.moving_flow import NUMBERS
 from vibro_sweep.engine.impulses.flow import contact_coordinates
-from vibro_sweep.model.linear import STEP, Linear, forcing_period
+from vibro_sweep.oscillator.linear import STEP, Linear, forcing_period
 
 
 class EventUnits(NamedTuple):

@@ -5,7 +5,7 @@ import numpy as np
 from vibro_sweep.engine.impulses import flights
 from vibro_sweep.engine.impulses.flow import contact_flow
 from vibro_sweep.engine.one_system import CONTACT
-from vibro_sweep.model.linear import Linear
+from vibro_sweep.oscillator.linear import Linear
 
 SAMPLES = 65  # of a contact, between which its depth and its force have no two extrema
 HALVINGS = 60  # of such an interval

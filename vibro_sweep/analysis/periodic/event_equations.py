@@ -17,7 +17,7 @@ from vibro_sweep.engine.impulses.extremes import middle_weights
 from vibro_sweep.engine.impulses.flow import closing, contact_coordinates, flow, unseen_modes
 from vibro_sweep.engine.impulses.free_modes import checked_cells
 from vibro_sweep.engine.impulses.taylor_orders import ORDER
-from vibro_sweep.model.linear import MOTION, Linear, amplitudes, remembered
+from vibro_sweep.oscillator.linear import MOTION, Linear, amplitudes, remembered
 
 
 class EventEquations:

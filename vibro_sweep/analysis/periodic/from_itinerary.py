@@ -16,7 +16,7 @@ from vibro_sweep.analysis.periodic.steady_gap import push_of_free_mode, steady_g
 from vibro_sweep.analysis.single.orbit import simulate
 from vibro_sweep.engine.impulses import flights
 from vibro_sweep.engine.impulses.flow import flow
-from vibro_sweep.model.linear import Family, amplitudes, forcing_period
+from vibro_sweep.oscillator.linear import Family, amplitudes, forcing_period
 
 SEEDS = 4000
 AT_ONCE = 250  # of them: the orbit may be among the first

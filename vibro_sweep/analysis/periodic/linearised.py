@@ -12,7 +12,7 @@ from vibro_sweep.engine.continuation import stepper
 from vibro_sweep.engine.continuation.problem import FLIP, FOLD, GRAZE
 from vibro_sweep.engine.continuation.workspace import THETA
 from vibro_sweep.engine.impulses.flow import rate_slopes
-from vibro_sweep.model.linear import Linear
+from vibro_sweep.oscillator.linear import Linear
 
 
 class Linearised:

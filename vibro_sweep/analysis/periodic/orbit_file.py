@@ -15,9 +15,9 @@ from vibro_sweep.checks.file_names import ExistingFileError, FileError, checked_
 from vibro_sweep.checks.real import array_of, number_of
 from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.engine.impulses.free_modes import ResonanceError, TooStiffError, without_orbit
-from vibro_sweep.model.linear import family_of
-from vibro_sweep.model.models import DEFAULT
-from vibro_sweep.model.oscillator import Oscillator
+from vibro_sweep.oscillator.linear import family_of
+from vibro_sweep.oscillator.models import DEFAULT
+from vibro_sweep.oscillator.oscillator import Oscillator
 
 FORMAT = "vibro_sweep periodic orbit 2"
 WITHOUT_CHECKSUM = "vibro_sweep periodic orbit 1"

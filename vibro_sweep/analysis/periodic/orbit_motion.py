@@ -9,7 +9,7 @@ from vibro_sweep.analysis.periodic.event_equations import EventEquations
 from vibro_sweep.analysis.periodic.steady_gap import steady_gap
 from vibro_sweep.engine.continuation import stepper
 from vibro_sweep.engine.continuation.workspace import TEST
-from vibro_sweep.model.linear import forcing_period
+from vibro_sweep.oscillator.linear import forcing_period
 
 
 class OrbitMotion:

@@ -4,7 +4,7 @@ import numpy as np
 
 from vibro_sweep.engine.impulses import flights, graded_product
 from vibro_sweep.engine.impulses.flow import Flow
-from vibro_sweep.model.linear import Linear
+from vibro_sweep.oscillator.linear import Linear
 
 UNORDERED = 1e-9  # of the period: by so much rounding may exchange impacts
 

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vibro_sweep.model.wording import itinerary_text
+from vibro_sweep.oscillator.wording import itinerary_text
 
 if TYPE_CHECKING:
     from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit

@@ -14,7 +14,7 @@ import numpy as np
 from vibro_sweep.analysis.periodic.contact_numbers import one_plus_R
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses.flow import contact_coordinates
-from vibro_sweep.model.linear import Family, Linear
+from vibro_sweep.oscillator.linear import Family, Linear
 
 MOST_DAMPED = 0.95  # of z, beyond which a contact of a free mass is as long as with this
 STIFFER = 1e4, 1e2, 1.0  # times the stiffness, at the same z

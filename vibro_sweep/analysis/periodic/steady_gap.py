@@ -6,7 +6,7 @@ import numpy as np
 
 from vibro_sweep.engine.impulses.flow import contact_coordinates
 from vibro_sweep.engine.impulses.free_modes import ResonanceError, free_modes, has_free_gap
-from vibro_sweep.model.linear import Linear, amplitudes
+from vibro_sweep.oscillator.linear import Linear, amplitudes
 
 
 class SteadyGap(NamedTuple):

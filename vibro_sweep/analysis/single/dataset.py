@@ -6,9 +6,9 @@ import numpy as np
 
 from vibro_sweep.analysis.single.result import columns_of
 from vibro_sweep.checks.errors import ArgumentError
-from vibro_sweep.model.linear import Linear
-from vibro_sweep.model.models.declaration import UNITS
-from vibro_sweep.model.stop_force import force_of
+from vibro_sweep.oscillator.linear import Linear
+from vibro_sweep.oscillator.models.declaration import UNITS
+from vibro_sweep.oscillator.stop_force import force_of
 from vibro_sweep.tables.coordinates import state
 from vibro_sweep.tables.units import unit_in
 

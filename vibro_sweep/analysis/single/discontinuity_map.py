@@ -8,7 +8,7 @@ from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.checks.real import number_of
 from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.engine.period_map import PeriodMap
-from vibro_sweep.model.oscillator import Oscillator, checked_system
+from vibro_sweep.oscillator.oscillator import Oscillator, checked_system
 from vibro_sweep.tables.coordinates import checked_state
 
 ORDERS = (1, 2)

@@ -21,8 +21,8 @@ from vibro_sweep.engine.halting import interruptible
 from vibro_sweep.engine.motion import orbits
 from vibro_sweep.engine.one_system import Engine, is_paper, plan_of
 from vibro_sweep.engine.records import new_results, starts_at
-from vibro_sweep.model.oscillator import Oscillator, checked_system
-from vibro_sweep.model.own_time import rate_of, with_velocities
+from vibro_sweep.oscillator.oscillator import Oscillator, checked_system
+from vibro_sweep.oscillator.own_time import rate_of, with_velocities
 from vibro_sweep.tables.coordinates import checked_state
 from vibro_sweep.tables.outcomes import OK, status_of
 

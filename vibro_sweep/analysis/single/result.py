@@ -9,7 +9,7 @@ import numpy as np
 
 from vibro_sweep.checks.errors import ArgumentError, MissingPackageError
 from vibro_sweep.checks.refusals import not_allowed
-from vibro_sweep.model.wording import itinerary_text
+from vibro_sweep.oscillator.wording import itinerary_text
 
 if TYPE_CHECKING:
     import pandas

@@ -5,9 +5,9 @@ import numpy as np
 from vibro_sweep.engine.any_points import any_points, kind_of
 from vibro_sweep.engine.one_system import is_paper, points_of
 from vibro_sweep.engine.records import PAPER, Kind
-from vibro_sweep.model.grid import grid, linears
-from vibro_sweep.model.oscillator import Oscillator
-from vibro_sweep.model.own_time import in_own_time, rate_of
+from vibro_sweep.oscillator.grid import grid, linears
+from vibro_sweep.oscillator.oscillator import Oscillator
+from vibro_sweep.oscillator.own_time import in_own_time, rate_of
 
 
 def table_of(system: Oscillator, axes: dict[str, np.ndarray], frames: bool) -> tuple[np.ndarray, Kind, float]:

@@ -12,7 +12,7 @@ from vibro_sweep.analysis.periodic.one_thread import one_thread
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.analysis.windows.rows import REASON_CODES
 from vibro_sweep.analysis.windows.stretch import representative, stable_stretch
-from vibro_sweep.model.own_time import as_lengths
+from vibro_sweep.oscillator.own_time import as_lengths
 
 SLACK = 1e-9  # of the range: an orbit that is so far from a window's end may be counted as beyond it
 NEAR = 1e-3  # of the size of the state: a recorded orbit that is farther from the periodic one has not settled

@@ -17,7 +17,7 @@ from vibro_sweep.analysis.single.result import FileResult
 from vibro_sweep.analysis.windows import window_text
 from vibro_sweep.analysis.windows.unvisited import Unvisited, unvisited_in
 from vibro_sweep.analysis.windows.window_search import WindowSearch
-from vibro_sweep.model.window_families import WindowFamily, families
+from vibro_sweep.oscillator.window_families import WindowFamily, families
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 from vibro_sweep.analysis.branches.branch_text import event
 from vibro_sweep.analysis.periodic.orbit_text import LINES, repr_text
-from vibro_sweep.model.wording import itinerary_text, without_rounding
+from vibro_sweep.oscillator.wording import itinerary_text, without_rounding
 
 if TYPE_CHECKING:
     from vibro_sweep.analysis.windows.window import Window, Windows

@@ -6,7 +6,7 @@ import numpy as np
 
 from vibro_sweep.checks.errors import VibroSweepError
 from vibro_sweep.engine.impulses.taylor_orders import REACH
-from vibro_sweep.model.linear import MATRICES, Linear, forcing_period, remembered
+from vibro_sweep.oscillator.linear import MATRICES, Linear, forcing_period, remembered
 
 MOST_CELLS = 1 << 17
 

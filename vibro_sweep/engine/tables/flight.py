@@ -61,8 +61,12 @@ def oscillator_of(masses: int, constant: bool = False) -> np.dtype:
             float,
             (masses,),
         ),  # what a step of x1 by 1 at once moves v1 (nothing), v2 (by 2 zeta/mu_m), ... by dampers
-        ("push", float, (masses,)),  # what a unit impulse on M1 does to v1 (1), v2, ... at once (model/contact.py), and
-        ("drag", float),  # to the acceleration of M1
+        (
+            "push",
+            float,
+            (masses,),
+        ),  # what a unit impulse on M1 does at once to v1 (1), v2, .. (coordinates/contact.py)
+        ("drag", float),  # and to the acceleration of M1
         ("graze", float, (states,)),  # the point at which the discontinuity mapping is expanded
         ("remainder", float, (states + 1,)),  # bound on |x1 - cubic| in any cell, for unit X - r and for r
         ("slow", float, (states,)),  # part of the slow modes in x1; of a stiff system

@@ -1,4 +1,4 @@
-"""The tables of any linear oscillator with one contact, in contact coordinates (model/contact.py)."""
+"""The tables of any linear oscillator with one contact, in contact coordinates (coordinates/contact.py)."""
 
 import math
 from typing import NamedTuple

@@ -1,9 +1,9 @@
 """Derivatives of the state at a section by the state and the parameters at the start, along an orbit that is known.
 
 The impacts and rests on the way are given, as the event loop recorded them. With z' = A z between them (z in phase s =
-omega t, in the coordinates of the masses: model/sensitivity.py) a derivative dz obeys the same equation with the source
-(A_p/dp) z. Where dz is kept at a fixed phase, an event acts on it through the distance d = n.dx - dw by which it moves
-the gap n.x towards the stop at w, with p = M^-1 n/(n.M^-1 n):
+omega t, in the coordinates of the masses: sensitivity.py of the oscillator) a derivative dz obeys the same equation
+with the source (A_p/dp) z. Where dz is kept at a fixed phase, an event acts on it through the distance d = n.dx - dw
+by which it moves the gap n.x towards the stop at w, with p = M^-1 n/(n.M^-1 n):
 
     impact   dx -> dx - (1 + R) p d,     dv -> dv + (a+ - a-) d/g' - p ((1 + R) dg' + g' dR) - (1 + R) g' dp
     rest     dx -> dx - p d,             dv -> dv - p n.dv - g' dp + (1 - p n^T) M^-1 C p d

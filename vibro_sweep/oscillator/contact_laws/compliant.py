@@ -1,0 +1,49 @@
+"""The compliant stop: a spring and a damper side by side, without mass, which a preload may press together."""
+
+from dataclasses import replace
+
+from vibro_sweep.oscillator.contact_laws.contact_law import Choice, ContactLaw
+from vibro_sweep.tables.quantity import NOT_NEGATIVE, Parameter, Range
+
+MODERATE = Range("a number from 0 to 1e100", {"minimum": 0, "maximum": 1e100})  # its square has to be a number
+
+STIFFNESS = Parameter(
+    "k_stop", "stiffness of the stop", "stiffness of a compliant stop, in place of R; 0: a damper alone",
+    r"k_{\mathrm{stop}}", "N m-1", NOT_NEGATIVE, optional=True,
+    instead="where a machine is softer beyond b, describe the softer side as the machine and the stiffer one as its "
+    "stop, mirrored",
+)  # fmt: skip
+DAMPING = Parameter(
+    "c_stop", "damping of the stop", "damping of a compliant stop; left out: 0",
+    r"c_{\mathrm{stop}}", "N s m-1", NOT_NEGATIVE, optional=True,
+)  # fmt: skip
+PRELOAD = Parameter(
+    "preload", "preload of the stop",
+    "force with which a compliant stop is pressed together before it is touched; left out: 0",
+    r"p_{\mathrm{stop}}", "N", MODERATE, optional=True,
+)  # fmt: skip
+NUMBERS = (STIFFNESS, DAMPING, PRELOAD)
+
+LAW = ContactLaw(
+    name="compliant",
+    title="the mass presses the stop in, against a spring and a damper",
+    equations="F = k_stop delta + c_stop delta' + preload,   delta how far the mass is behind the stop",
+    source="Kelvin's and Voigt's element of viscoelasticity; piecewise linear as in S. W. Shaw and P. J. Holmes, "
+    "J. Sound Vib. 90 (1983) 129",
+    numbers=NUMBERS,
+    left=tuple(
+        replace(
+            one, name=f"{one.name}_left", symbol=one.symbol.replace("stop", "left"),
+            label=f"left {one.label.split(' ')[0]}", text=f"{one.name} of the left stop; left out: {one.name}",
+            follows=one.name,
+        )
+        for one in NUMBERS
+    ),
+    options=(
+        Choice(
+            "release",
+            "where a contact with a compliant stop ends: at zero displacement, or where its force is zero",
+            ("displacement", "force"),
+        ),
+    ),
+)  # fmt: skip

@@ -1,0 +1,328 @@
+"""A linear oscillator with one contact, as the engine sees all of them: any number of masses N.
+
+    M x'' + C x' + K x = constant + sine sin(omega t + tau) + cosine cos(omega t + tau),   low <= n.x <= high
+
+An impulse acts along M^-1 n: it changes the velocity of the gap g = n.x, with the restitution of the stop that is hit.
+"""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property, lru_cache, wraps
+from operator import attrgetter
+from typing import NamedTuple
+
+import numpy as np
+
+from vibro_sweep.checks.errors import ArgumentError, ArgumentTypeError
+from vibro_sweep.checks.refusals import not_allowed
+from vibro_sweep.oscillator.contact_laws.compliant import LAW as COMPLIANT
+from vibro_sweep.oscillator.stacks import least_squares
+from vibro_sweep.oscillator.steady import gap_responses, grazing_phases, responses, static_states, steady_amplitudes
+from vibro_sweep.oscillator.stops import NUMBERS, stop_of, why_rigid
+
+MATRICES = ("M", "K", "C", "normal", "omega")  # fields that move free modes,
+FORCED = (*MATRICES, "constant", "sine", "cosine")  # the steady motion too,
+MOTION = (*FORCED, "tau")  # and the flight from a time on
+RANKS = {"M": 2, "K": 2, "C": 2, "normal": 1, "constant": 1, "sine": 1, "cosine": 1}  # fields that are no numbers
+LEAST = 1e-100  # stiffness of a stop that is a damper alone: no double is that small beside another of a machine
+STEP = 1e-100  # of the complex step: its square underflows, so that a derivative has no truncation error
+
+
+class Linear(NamedTuple):
+    """The oscillator's numbers; and, with the same fields, their derivatives by one parameter.
+
+    M, K, C : (N, N) matrices of masses, stiffnesses and dampers
+    normal : (N,) n of the gap n.x
+    constant, sine, cosine : (N,) constant force, amplitudes of sin(omega t + tau) and cos(omega t + tau)
+    omega, tau : frequency, and phase in radians; tau None: the steady gap is largest at t = 0
+    low, high : positions of the stops; infinite where there is none
+    R_low, R_high : their coefficients of restitution
+    middle : the offset about which the stops lie
+    k_low, c_low, p_low, k_high, c_high, p_high : stiffness, damping and preload of compliant stops; 0 of rigid ones,
+        and of compliant ones R is NaN
+    by_force : whether contact ends where the force of the stop is zero, and not at zero displacement
+
+    Examples
+    --------
+    >>> import vibro_sweep as vs
+    >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
+    >>> matrices = system.linear
+    >>> matrices.K
+    array([[ 1., -1.],
+           [-1.,  6.]])
+    >>> float(matrices.low), float(matrices.high), bool(matrices.symmetric)
+    (-4.0, 4.0, True)
+    """
+
+    M: np.ndarray
+    K: np.ndarray
+    C: np.ndarray
+    normal: np.ndarray
+    constant: np.ndarray
+    sine: np.ndarray
+    cosine: np.ndarray
+    omega: float
+    tau: float | None
+    low: float
+    high: float
+    R_low: float
+    R_high: float
+    middle: float = 0.0
+    k_low: float = 0.0
+    c_low: float = 0.0
+    p_low: float = 0.0
+    k_high: float = 0.0
+    c_high: float = 0.0
+    p_high: float = 0.0
+    by_force: bool = False
+
+    @property
+    def symmetric(self) -> bool:
+        """Whether x -> -x, t -> t + T/2 maps motions to motions."""
+        kind = self.k_low, self.c_low, self.p_low
+        alike = kind == (self.k_high, self.c_high, self.p_high) and (kind[0] > 0 or self.R_low == self.R_high)
+        return self.low == -self.high and alike and not np.any(self.constant)
+
+    @property
+    def compliant(self) -> bool:
+        """Whether a stop is: then there is motion beyond it."""
+        return (self.k_low > 0) | (self.k_high > 0)
+
+    def is_compliant(self, sides) -> np.ndarray:
+        """Whether the stops on these sides (+1 high, -1 low) are compliant."""
+        return np.where(np.asarray(sides) > 0, self.k_high, self.k_low) > 0
+
+    def stop(self, sides) -> np.ndarray:
+        """Positions of the stops on these sides (+1 high, -1 low)."""
+        return np.where(np.asarray(sides) > 0, self.high, self.low)
+
+    def restitution(self, sides) -> np.ndarray:
+        """Coefficients of restitution of the stops on these sides (+1 high, -1 low)."""
+        return np.where(np.asarray(sides) > 0, self.R_high, self.R_low)
+
+
+@dataclass(frozen=True)
+class Family:
+    """Oscillators with parameters that have names: `build(**numbers)` gives a `Linear`.
+
+    `build` must accept complex numbers and be analytic in them: derivatives are taken by a complex step.
+
+    Examples
+    --------
+    A periodic orbit of a family has the derivatives that its `build` has.
+
+    >>> import vibro_sweep as vs
+    >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
+    >>> family = system.family
+    >>> float(family.derivative("b").high), family.replace(b=5.0).numbers["b"]
+    (1.0, 5.0)
+    """
+
+    build: Callable[..., Linear]
+    numbers: dict
+
+    @property
+    def free(self) -> dict[str, float]:
+        """The numbers that have a value: those that may be changed along a branch."""
+        return {name: value for name, value in self.numbers.items() if isinstance(value, (int, float))}
+
+    def replace(self, **changes) -> "Family":
+        """The same family with other numbers."""
+        return Family(self.build, self.numbers | changes)
+
+    @cached_property
+    def built(self) -> Linear:
+        """The oscillator; its phase is None where it follows from the motion."""
+        return self.build(**self.numbers)
+
+    @cached_property
+    def linear(self) -> Linear:
+        """The oscillator, its phase resolved."""
+        return self.built._replace(tau=grazing_phase(self.built)) if self.built.tau is None else self.built
+
+    def derivative(self, name: str, linear: Linear | None = None) -> Linear:
+        """Derivatives of all fields by the parameter `name`, exact to rounding. linear: this one's, if it is known."""
+        step = self.build(**(self.numbers | {name: self.numbers[name] + 1j * STEP}))
+        parts = {}
+        for field, value in step._asdict().items():
+            if field != "tau":
+                parts[field] = np.imag(value) / STEP if np.iscomplexobj(value) else np.zeros(np.shape(value))
+        slope = Linear(**parts, tau=0.0 if step.tau is None else float(np.imag(step.tau)) / STEP)
+        if step.tau is None:
+            slope = slope._replace(tau=grazing_phase_slope(linear or self.linear, slope))
+        return slope
+
+
+def taken(q: Linear, which) -> Linear:
+    """These oscillators of a stack, by an index or a mask; one of them by a number."""
+    return Linear(*(None if field is None else np.asarray(field)[which] for field in q))
+
+
+def stacked(each: Sequence[Linear]) -> Linear:
+    """A stack of oscillators, of each field (n, ...)."""
+    return Linear(*(np.stack(field) for field in zip(*each, strict=True)))
+
+
+class Keyed:
+    """An oscillator as a key of what depends on the values of some fields alone: equal where all of them are."""
+
+    def __init__(self, q: Linear, values: tuple):
+        self.q = q
+        self.key = tuple([value.tobytes() if isinstance(value, np.ndarray) else value for value in values])
+
+    def __hash__(self):
+        return hash(self.key)
+
+    def __eq__(self, other):
+        return self.key == other.key
+
+
+def remembered(*names: str, most: int = 64):
+    """A function of an oscillator and other arguments, whose last results are kept for equal fields `names`."""
+
+    values = attrgetter(*names)
+
+    def keeping(function):
+        @lru_cache(most)
+        def known(key: Keyed, *others):
+            return function(key.q, *others)
+
+        @wraps(function)
+        def of(q: Linear, *others):
+            return known(Keyed(q, values(q)), *others)
+
+        return of
+
+    return keeping
+
+
+@remembered(*FORCED, most=1024)  # as many as a curve has points
+def amplitudes(q: Linear) -> np.ndarray:
+    """Complex amplitudes X (N,) of the steady motion Re(X e^{i(omega t + tau)}). LinAlgError in undamped resonance.
+
+    Where the force does not drive the mode in resonance, the steady motion without that mode.
+    """
+    found = _existing(steady_amplitudes(q))
+    found.flags.writeable = False  # it is shared
+    return found
+
+
+def _existing(amplitudes: np.ndarray) -> np.ndarray:
+    if np.isnan(amplitudes).any():
+        raise np.linalg.LinAlgError("the force drives an undamped mode at its own frequency")
+    return amplitudes
+
+
+def amplitude_slopes(q: Linear, slope: Linear) -> np.ndarray:
+    """Derivatives (N,) of `amplitudes` where q changes by `slope`."""
+    dz = (
+        slope.K
+        - 2 * q.omega * slope.omega * q.M
+        - q.omega * q.omega * slope.M
+        + 1j * (slope.omega * q.C + q.omega * slope.C)
+    )
+    return _existing(responses(q, slope.cosine - 1j * slope.sine - dz @ amplitudes(q)))
+
+
+def grazing_phase(q: Linear) -> float:
+    """tau for which the steady gap is largest at t = 0; 0 where there is no steady motion (eq. 18 for any n)."""
+    response = gap_response(q)
+    return float(grazing_phases(np.nan if response is None else response))
+
+
+@remembered(*FORCED, most=1024)
+def gap_response(q: Linear) -> complex | None:
+    """G of the steady gap g_s + Re(G e^{i(omega t + tau)}); None where there is no steady motion."""
+    response = complex(gap_responses(q, steady_amplitudes(q)))
+    return response if np.isfinite(response) else None
+
+
+def grazing_phase_slope(q: Linear, slope: Linear) -> float:
+    if not any(np.any(getattr(slope, name)) for name in FORCED):
+        return 0.0
+    response = gap_response(q)
+    if response is None:
+        return 0.0
+    return -float(np.imag((slope.normal @ amplitudes(q) + q.normal @ amplitude_slopes(q, slope)) / response))
+
+
+def static_state(q: Linear) -> np.ndarray | None:
+    """Positions (N,) at which all masses rest without the harmonic force and the stops; None where there are none.
+
+    Of several, where there are free modes, the nearest to zero.
+    """
+    found = static_states(q)
+    return found if np.isfinite(found).all() else None
+
+
+def stack_of(family: Family, shape: tuple[int, ...], changes: dict[str, np.ndarray]) -> Linear:
+    """The oscillators of a family with these numbers, arrays that broadcast to `shape`: a stack, phases resolved."""
+    built = family.build(**(family.numbers | changes))._asdict()
+    own = {name: np.shape(one)[np.ndim(one) - RANKS.get(name, 0) :] for name, one in built.items()}
+    everywhere = {name: np.broadcast_to(one, shape + own[name]) for name, one in built.items() if one is not None}
+    q = Linear(**{"tau": None} | everywhere)
+    return q._replace(tau=grazing_phases(gap_responses(q, steady_amplitudes(q)))) if q.tau is None else q
+
+
+def rest_state(q: Linear) -> np.ndarray:
+    """Positions (..., N) from which to start at rest: zero, or the static equilibrium held on the nearer stop.
+
+    Held: the gap is zero's where that is between the stops; else that of the stop, and no other force acts along n.
+    """
+    gap = np.minimum(np.maximum(0.0, q.low), q.high)
+    result, held = np.zeros(q.normal.shape), gap != 0.0
+    if held.any():
+        q = taken(q, held)
+        result[held] = least_squares(bordered(q.K, q.normal), np.append(q.constant, gap[held][..., None], -1))[..., :-1]
+    return result
+
+
+def bordered(K: np.ndarray, normal: np.ndarray) -> np.ndarray:
+    """(..., N + 1, N + 1): K, and the gap n . x as one more row and column."""
+    n = K.shape[-1]
+    result = np.zeros((*K.shape[:-2], n + 1, n + 1))
+    result[..., :n, :n], result[..., :n, n], result[..., n, :n] = K, normal, normal
+    return result
+
+
+def contact(*, b, offset=0.0, stops="both", release="displacement", **numbers) -> dict:
+    """The fields of `Linear` that say where the stops are, and of what kind; also for complex numbers.
+
+    numbers : those of the stops, by name
+    """
+    if unknown := numbers.keys() - {*NUMBERS}:
+        raise TypeError(f"stops have no {', '.join(sorted(unknown))}")
+    low, high = stop_of(numbers, "left"), stop_of(numbers, "right")
+    fields = {"R": ("R", np.nan), "c": ("c_stop", 0.0), "p": ("preload", 0.0)}
+    return {
+        "low": offset - b if stops != "right" else -np.inf,
+        "high": offset + b if stops != "left" else np.inf,
+        "middle": offset,
+        **{f"{field}_low": low.number(*one) for field, one in fields.items()},
+        **{f"{field}_high": high.number(*one) for field, one in fields.items()},
+        **{f"k_{name}": one.number("k_stop", -LEAST) + LEAST for name, one in (("low", low), ("high", high))},
+        "by_force": release == "force" and COMPLIANT in (low.law, high.law),
+    }
+
+
+def family_of(system) -> Family:
+    """The oscillators that `system` is one of, by the names of its numbers. TypeError for anything else."""
+    if isinstance(system, Family):
+        return system
+    if not isinstance(getattr(system, "family", None), Family):
+        raise ArgumentTypeError(not_allowed("system", system, "a System or an Oscillator"))
+    return system.family
+
+
+def rigid_family_of(system, what: str) -> Family:
+    """The same, for what is computed with rigid stops alone (`NEEDS_IMPACTS`). Raises ValueError where one is not."""
+    family = family_of(system)
+    if family.built.compliant:
+        raise ArgumentError(not_allowed("system", system, f"with rigid stops: {why_rigid(what)}"))
+    return family
+
+
+def forcing_period(q: Linear) -> float:
+    """T = 2 pi/omega."""
+    return 2 * math.pi / q.omega

@@ -1,0 +1,66 @@
+"""One mass on a spring, with one stop or two; without the spring a bouncing ball, or the rattle of gears."""
+
+import numpy as np
+
+from vibro_sweep.oscillator.linear import Linear, contact
+from vibro_sweep.oscillator.models.declaration import CONTACT, OF_STOPS, UNITS, WHICH_STOPS, Model, Option
+from vibro_sweep.oscillator.stacks import matrix, vector
+from vibro_sweep.tables.quantity import NOT_NEGATIVE, Parameter
+
+
+def one_mass(*, k, zeta, F, constant, base, omega, tau, **stops) -> Linear:
+    """The oscillator; numbers may be complex."""
+    return Linear(
+        M=np.ones((1, 1)),
+        K=matrix([[k]]),
+        C=matrix([[2 * zeta]]),
+        normal=np.ones(1),
+        constant=vector([constant]),
+        sine=vector([F * omega * omega if base else F]),
+        cosine=np.zeros(1),
+        omega=omega,
+        tau=None if isinstance(tau, str) else tau,
+        **contact(**stops),
+    )
+
+
+MODEL = Model(
+    name="one_mass",
+    title="one mass, one stop or two; k = 0: bouncing ball, rattling gears",
+    sketch=r"""
+           L |<-- b -->.-----.<-- b -->| R      stops at offset - b and offset + b
+                       |  1  |
+    ||---/\/\--[--]----'-----'                  spring k and damper 2 zeta
+                         x1
+""",
+    equations="""
+    x1'' + 2 zeta x1' + k x1 = constant + F sin(omega t + tau)
+    base: true   the wall moves: F omega^2 in place of F (x1 is counted from the wall)
+    bouncing ball on a table A sin(omega t), gravity G: k = 0, zeta = 0, constant = -G, base: true, F = A,
+    stops: left, b = 0
+""",
+    source="S. W. Shaw and P. J. Holmes, J. Sound Vib. 90 (1983) 129; bouncing ball: P. J. Holmes, J. Sound Vib. 84 "
+    "(1982) 173; orbits to compare with: arXiv 2510.16218",
+    numbers=(
+        Parameter(
+            "k", "stiffness", "stiffness of the spring", "k", "N m-1", NOT_NEGATIVE, default=1.0, free_motion=True
+        ),
+        Parameter(
+            "zeta", "damping ratio", "half the damping coefficient", r"\zeta", "N s m-1", NOT_NEGATIVE, free_motion=True
+        ),
+        Parameter(
+            "F", "forcing amplitude", "amplitude of the force, or of the wall's motion", "F", "N", free_motion=True
+        ),
+        Parameter("constant", "constant force", "constant force", r"\bar f", "N", default=0.0, free_motion=True),
+        *CONTACT,
+    ),
+    options=(
+        Option("base", "flag", "true: the wall moves, and the force is F omega^2", False),
+        WHICH_STOPS,
+        *OF_STOPS,
+        UNITS,
+    ),
+    masses=lambda given: 1,
+    build=one_mass,
+    depending=lambda given: {"F": "m"} if given["base"] else {},  # the wall's motion
+)
