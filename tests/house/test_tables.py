@@ -9,6 +9,7 @@ from support import ROOT
 from support.scene_texts import parsed
 
 import vibro_sweep as vs
+from vibro_sweep.checks.not_computed import ROWS
 from vibro_sweep.driver.blocks import plan_of
 from vibro_sweep.engine.records import POINT, new_results, result_of
 from vibro_sweep.engine.simd.kernel_cache import ENGINE, SHARED
@@ -22,6 +23,14 @@ from vibro_sweep.tables.observables import DIMENSIONS, VARIABLES
 PAPER = "system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0.1, omega: 0.63, R: 0.8, b: 6.6}"
 NEEDS = {"section": "states", "lyapunov": "states lyapunov", "impacts": "impacts", "convergence": "states lyapunov",
          "multipliers": "states lyapunov", "attractors": "states lyapunov attractors"}  # fmt: skip
+
+
+def test_the_page_on_your_machine_says_what_is_refused():
+    said = (ROOT / "docs" / "start" / "your_machine.md").read_text().partition("| your machine has | take |\n")[2]
+    table = said.partition("\n\n")[0].splitlines()[1:]
+    assert table == [f"| {row.machine} | {row.instead} |" for row in ROWS] and len(table) > 6
+    names = [name for row in ROWS for name in row.names]
+    assert len(names) == len({*names})
 
 
 def test_records_of_the_kernels_have_the_types_of_files():
