@@ -1,13 +1,11 @@
 """The force of compliant stops along a motion: over time, and against the gap as a loop."""
 
-import matplotlib as mpl
 import numpy as np
 
 from vibro_sweep.plotting import pressed
 from vibro_sweep.plotting.orbit_pictures import displacements, legend, shows_trajectory
 from vibro_sweep.plotting.paths import path
-from vibro_sweep.plotting.plot_options import PlotOptions
-from vibro_sweep.plotting.style import DASHES, FAINT, LEFT, RIGHT, stop_name, symbol, with_unit
+from vibro_sweep.plotting.style import DASHES, FAINT, LEFT, RIGHT, stop_name, symbol
 from vibro_sweep.plotting.sweep_result import Result
 
 COLOURS = {1: RIGHT, -1: LEFT}
@@ -49,24 +47,3 @@ def draw(over_time, loop, t, gap, force, side: int, stop: float, label: str) -> 
     over_time.plot(t, force, **style)
     loop.plot(gap, np.where(force != 0, force, np.nan), **style)
     loop.axvline(stop, color=FAINT, lw=0.8, ls=DASHES)
-
-
-def contact_force_of_orbit(times, gap, forces, title: str, system, name: str, width=None):
-    """The same of one orbit. times, gap: (m,); forces: of each compliant stop (side, where it stands, (m,)).
-
-    system : whose units the axes have; name : of the gap; width : mm
-    """
-    options = PlotOptions(width=width)
-    t_label, x_label, label = (
-        with_unit(text, unit, system) for text, unit in (("time $t$", "s"), (name, "m"), ("force of the stop", "N"))
-    )
-    with mpl.rc_context(options.style):
-        fig = options.page(3.2, title)
-        over_time, loop = fig.subplots(1, 2, width_ratios=(2, 1), sharey=True)
-        for side, stop, force in forces:
-            draw(over_time, loop, times, gap, force, side, stop, f"{'right' if side > 0 else 'left'} stop")
-        over_time.set(xlabel=t_label, ylabel=label)
-        over_time.margins(x=0)
-        loop.set(xlabel=x_label)
-        legend(fig)
-        return fig

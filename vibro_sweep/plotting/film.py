@@ -13,6 +13,7 @@ from vibro_sweep.plotting.page import Picture, page
 from vibro_sweep.plotting.paths import path
 from vibro_sweep.plotting.style import DASHES, FAINT, INK, SECTION, symbol
 from vibro_sweep.plotting.sweep_result import PlotError, Result
+from vibro_sweep.results.motion import Motion
 
 SUFFIXES = (".gif", ".mp4")
 FRAMES, RATE = 200, 20  # ten seconds
@@ -115,6 +116,8 @@ def film(result: Result) -> Film:
     return moving.begin(way.t[there], positions, gap, stops, result.unit(first))
 
 
-def new_film(t, positions, gap, stops, title: str) -> Film:
-    """A film of evenly sampled motion, as `_OfAnOrbit.begin` takes it."""
-    return page(HEIGHT, title, kind=_OfAnOrbit).begin(t, positions, gap, stops, "")
+def film_of(motion: Motion, name: str, period: float, title: str) -> Film:
+    """A film of evenly sampled motion with the positions of its masses; name : of the gap; period : of the force"""
+    stops = {stop: side * motion.force(side)[1] for side, stop in motion.stops.items()}
+    gap = name, motion.gap, motion.rate
+    return page(HEIGHT, title, kind=_OfAnOrbit).begin(motion.t / period, motion.positions, gap, stops, "")

@@ -14,7 +14,8 @@ from vibro_sweep.analysis.periodic.event_equations import EventEquations
 from vibro_sweep.analysis.periodic.itinerary import canonical_start, word
 from vibro_sweep.analysis.periodic.orbit_multipliers import squared
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.analysis.single.result import Result, event_table, shows_force
+from vibro_sweep.analysis.single.motion_of import motion_of, orbit_figure
+from vibro_sweep.analysis.single.result import Result, event_table
 from vibro_sweep.checks.arguments import LATEST, checked_times
 from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.engine.impulses import flights
@@ -265,26 +266,16 @@ class PeriodicOrbit(Result):
         return event_table(self)
 
     def plot(self, width: float | None = None, kind: str | None = None):
-        """Phase portrait of the gap and its time history, impacts marked: a matplotlib Figure, `width` mm wide.
+        """Phase portrait of the gap and its time history, impacts and contacts marked: a Figure, `width` mm wide.
 
         kind : "contact-force" for the force of the compliant stops over time and against the gap
         """
-        from vibro_sweep.analysis.single.dataset import force_figure
-        from vibro_sweep.plotting.periodic import plot_periodic
-
         q = self._solution.family.linear if self._solution is not None else None
         if q is None:
             raise ArgumentError(f"this orbit has no motion: {named(ORBITS, self.status).text}")
-        length = self.period * forcing_period(q)
         title = f"{self.itinerary or 'free'}, period {self.period}, {'stable' if self.stable else 'unstable'}"
-        if shows_force(kind):
-            return force_figure(self, q, 0.0, length, title, "gap", width)
-        t, sides, v = self.impacts["t"] % length, self.impacts["side"], self.impacts["v1"]
-        times = np.unique(np.concatenate([np.linspace(0, length, 400 * self.period + 1), t]))
-        states = self.sample(times)
-        gap, rate = states[:, ::2] @ q.normal, states[:, 1::2] @ q.normal
-        jumps, stops = (t, sides, v, -q.restitution(sides) * v), (q.low, q.high)
-        return plot_periodic(times, gap, rate, *jumps, stops, title, self.system, width=width)
+        motion = motion_of(self, q, 0.0, self.period * forcing_period(q), repeats=True)
+        return orbit_figure(motion, kind, title, self.system, ("gap", "gap velocity"), width)
 
     def save(self, path) -> Path:
         """Write the orbit as JSON, for `vibro_sweep.load`; nothing is overwritten."""

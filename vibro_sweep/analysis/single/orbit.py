@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from vibro_sweep.analysis.single.exponent_array import Exponents
-from vibro_sweep.analysis.single.result import Result, event_table, shows_force
+from vibro_sweep.analysis.single.motion_of import motion_of, orbit_figure, sampled
+from vibro_sweep.analysis.single.result import Result, event_table
 from vibro_sweep.checks.arguments import LATEST, checked_count, checked_times, names_its_arguments
 from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.checks.real import number_of
@@ -133,10 +134,10 @@ class Orbit(Result):
         kind : "contact-force" for the force of the compliant stops over time and against the gap
         Raises ValueError where `periods` is not a whole number >= 1, or nothing is simulated.
         """
-        from vibro_sweep.analysis.single.dataset import figure_of, force_figure_of
-
-        draw = force_figure_of if shows_force(kind) else figure_of
-        return draw(self, checked_count("periods", periods, 1), width)
+        (begin, end), q = self._last(checked_count("periods", periods, 1)), self.system.linear
+        names = ("$x_1$", "$v_1$") if self.system.gap_is_x1 else ("$g$", r"$\dot g$")
+        title = f"{begin:.6g} < t < {end:.6g}, b = {self.system.b:.6g}"
+        return orbit_figure(motion_of(self, q, begin, end), kind, title, self.system, names, width)
 
     def animate(self, periods: int = 8) -> FuncAnimation:
         """A film of the last forcing periods: masses between stops, time history and phase portrait in step.
@@ -144,9 +145,20 @@ class Orbit(Result):
         A notebook shows it by `HTML(orbit.animate().to_jshtml())`, and `.save("film.gif")` writes it. Raises ValueError
         where that is not a whole number >= 1, or nothing is simulated.
         """
-        from vibro_sweep.analysis.single.dataset import film_of
+        from vibro_sweep.plotting.film import FRAMES, film_of
 
-        return film_of(self, checked_count("periods", periods, 1)).animation()
+        times = np.linspace(*self._last(checked_count("periods", periods, 1)), 8 * FRAMES)
+        name, title = "x1" if self.system.gap_is_x1 else "gap", f"b = {self.system.b:.6g}"
+        return film_of(sampled(self, self.system.linear, times), name, self.system.period, title).animation()
+
+    def _last(self, periods: int) -> tuple[float, float]:
+        """Begin and end of the last forcing periods that were simulated. Raises ArgumentError where there are none."""
+        reached = self.section_times[np.isfinite(self.section[:, 0])]
+        if not len(reached) or reached[-1] <= self.start_time:
+            raise ArgumentError(
+                f"this orbit has no motion to draw: its status is {self.status!r}, its periods are too few"
+            )
+        return max(self.start_time, reached[-1] - periods * self.system.period), float(reached[-1])
 
     def sample(self, times: ArrayLike) -> np.ndarray:
         """States x1 v1 .. xN vN at `times`, (len(times), 2N). ValueError for no times, or beyond the simulated ones.
