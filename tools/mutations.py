@@ -33,6 +33,15 @@ SUBJECTS = {  # folders of the slow tests of a room
     "engine": ("accuracy", "engine", "orbits", "sweeps"),
     "oscillator": ("scenes", "accuracy"), "tables": ("scenes", "files"),
 }  # fmt: skip
+OF_PYTHON = {
+    "functools.cache",
+    "cache",
+    "remembered",
+    "dataclass",
+    "property",
+    "np.errstate",
+    "contextlib.contextmanager",
+}
 CHANGES = {
     "+": ["-"], "-": ["+"], "*": ["/"], "/": ["*"], "//": ["/"], "+=": ["-="], "-=": ["+="], "*=": ["/="], "/=": ["*="],
     "<": ["<=", ">"], "<=": ["<", ">="], ">": [">=", "<"], ">=": [">", "<="], "==": ["!="], "!=": ["=="],
@@ -76,12 +85,7 @@ class Line:
         body = ast.parse((home / name).read_text()).body
         blocks = [n for n in body if isinstance(n, ast.FunctionDef | ast.ClassDef)]
         block = next((n for n in blocks if n.lineno <= row <= n.end_lineno), None)
-        jitted = {ast.unparse(d) for d in getattr(block, "decorator_list", [])} & {
-            "jit",
-            "inline",
-            "noinline",
-            "exported",
-        }
+        jitted = {ast.unparse(d).partition("(")[0] for d in getattr(block, "decorator_list", [])} - OF_PYTHON
         constant = block is None or any(
             re.search(rf"\b{block.name}\(", ast.unparse(n)) for n in body if n not in blocks
         )
