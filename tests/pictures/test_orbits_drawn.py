@@ -163,6 +163,6 @@ def test_a_simulated_orbit_is_drawn_as_it_was_computed():
     assert [tuple(line.get_ydata()) for line in jumps][: len(inside)] == [(v, -PAPER.R * v) for v in inside["v1"]]
     arrows = [text for text in portrait.texts if text.get_gid() == "time"]
     assert len(arrows) == 4 and all((a.xy[0] - a.xyann[0]) * a.xy[1] > 0 for a in arrows)  # to the right where v1 > 0
-    assert {"impact", "stop", "direction of time"} < {*entries(portrait.figure)}
+    assert {"impact", "right stop", "direction of time"} < {*entries(portrait.figure)}
     with pytest.raises(ValueError, match="no motion to draw"):
         vs.simulate(PAPER, (0, 0, 0, 0), 0).plot()

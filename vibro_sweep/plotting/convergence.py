@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from vibro_sweep.plotting.orbit_pictures import legend
+from vibro_sweep.plotting.drawn_motion import legend
 from vibro_sweep.plotting.style import DASHES, INK, exponent, exponent_colour, exponents_name, limits
 from vibro_sweep.plotting.sweep_result import Result
 

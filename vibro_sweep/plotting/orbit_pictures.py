@@ -1,16 +1,14 @@
 """Pictures of single orbits: phase portrait, time history, section points one after another."""
 
 import numpy as np
-from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from vibro_sweep.plotting import pressed, rests
-from vibro_sweep.plotting.labels import legend_below
-from vibro_sweep.plotting.paths import GAP, gap_of, path
+from vibro_sweep.plotting import rests
+from vibro_sweep.plotting.drawn_motion import contacts, legend, levels, portrait, walls
+from vibro_sweep.plotting.stored_motion import GAP, gap_of, stored_motion
 from vibro_sweep.plotting.style import (
     DASHES,
     FAINT,
-    IMPACT,
     INK,
     LEFT,
     RIGHT,
@@ -19,13 +17,14 @@ from vibro_sweep.plotting.style import (
     before_impact,
     limits,
     stop_name,
+    stop_names,
     symbol,
 )
 from vibro_sweep.plotting.sweep_result import Result
 from vibro_sweep.plotting.sweeps import section_variables
 from vibro_sweep.tables.coordinates import MOST_MASSES, state
 
-ARROWS_AT = (0.06, 0.36, 0.66, 0.91)  # of the first forcing period, or of the whole way
+FINER = 32  # times the samples of a file, where a compliant stop is pressed
 
 
 def shows_trajectory(result: Result) -> bool:
@@ -78,18 +77,14 @@ def phase_portrait(result: Result):
     x_name = result.options.variable or displacements(result)[0]
     v_name = _velocity(x_name)
     for ax, point in panels:
-        way = path(result, point)
-        first = x_name == displacements(result)[0]
-        way = way if first or result.contact_normal is not None else way.joined()
-        if first and len(result.rigid) < len(result.sides) and not len(way.jumps):
-            way = pressed.finer(result, point, way.joined())
-        _line(ax, way[x_name], way[v_name], way)
-        rests.along(ax, way, x_name, v_name)
-        pressed.mark(ax, result, point, way, x_name, v_name)
+        motion = stored_motion(result, point)
+        first = x_name == motion.names[0]
+        motion = motion if first or result.contact_normal is not None else motion.joined()
+        if first and motion.laws and not len(motion.impacts):
+            motion = motion.joined().finer(FINER)
+        portrait(ax, motion, x_name, v_name)
         if first:
-            for stop, before, after in way.jumps:
-                ax.plot([stop, stop], [before, after], color=IMPACT, lw=1.2, ls=(0, (1, 1)), label="impact")
-            _walls(ax, result, point)
+            walls(ax, motion.stops, motion.laws, stop_names(result))
         _mark_sections(ax, result, point, x_name, v_name)
         ax.set(
             title=point.label,
@@ -104,25 +99,23 @@ def configuration(result: Result):
     """The first two masses' displacements against each other (the paper's figure 4), one panel an orbit."""
     fig, panels = _portraits(result, "Configuration plane")
     for ax, point in panels:
-        way = path(result, point).joined()
-        _line(ax, way["x1"], way["x2"], way)
-        rests.along(ax, way, "x1", "x2")
-        pressed.mark(ax, result, point, way, "x1", "x2")
+        motion = stored_motion(result, point).joined()
+        portrait(ax, motion, "x1", "x2")
         if result.contact_normal is None:
-            _walls(ax, result, point)
+            walls(ax, motion.stops, motion.laws, stop_names(result))
         elif not result.contact_normal[2:].any():
-            _slanted_walls(ax, result, point)
+            _slanted_walls(ax, result, motion)
         _mark_sections(ax, result, point, "x1", "x2")
         ax.set(title=point.label, xlabel=symbol("x1") + result.unit("x1"), ylabel=symbol("x2") + result.unit("x2"))
     legend(fig)
     return fig
 
 
-def _slanted_walls(ax, result, point):
+def _slanted_walls(ax, result, motion):
     """The stops of a contact between masses 1 and 2: n1 x1 + n2 x2 = gap."""
     frame = ax.get_xlim(), ax.get_ylim()
     n1, n2 = result.contact_normal[:2]
-    for side, stop in result.stops(point.place).items():
+    for side, stop in motion.stops.items():
         style = {"color": FAINT, "lw": 0.8, "ls": "-" if side > 0 else DASHES, "zorder": 1}
         if n2:
             ax.plot(frame[0], (stop - n1 * np.array(frame[0])) / n2, label=stop_name(result, side), **style)
@@ -156,7 +149,8 @@ def poincare(result: Result):
             least = 0.01 * abs(result.number("b", point.place) or 0.0)
             ax.set(xlim=limits(x, least), ylim=limits(v, least))
         if x_name == "x1" and result.contact_normal is None:
-            _walls(ax, result, point)
+            stops = result.stops(point.place)
+            walls(ax, stops, [side for side in stops if result.compliance(side, point.place)], stop_names(result))
         name = before_impact if "phase" in result else at_section
         phase = r"$\omega t$ mod $2\pi$" if x_name == "phase" else None
         ax.set(title=point.label, xlabel=phase or name(x_name) + result.unit(x_name))
@@ -169,23 +163,6 @@ def _different(values) -> int:
     """The number of points that one can distinguish, at least 1."""
     known = values[np.isfinite(values)]
     return len(np.unique(np.round(known / (np.ptp(known) or 1.0), 3))) if len(known) else 1
-
-
-def _line(ax, x, y, way):
-    """The way as a line with arrows of time."""
-    ax.plot(x, y, color=INK, lw=0.7)
-    arrows(ax, way.t, x, y, ARROWS_AT)
-
-
-def arrows(ax, t, x, y, times):
-    """Arrows of time on the way (x, y) with NaN in its gaps, at these times or the nearest that do."""
-    known = np.flatnonzero(np.isfinite(x[:-1]) & np.isfinite(x[1:]) & (np.hypot(np.diff(x), np.diff(y)) > 0))
-    if not len(known):
-        return
-    for at in known[np.searchsorted(t[known], times).clip(max=len(known) - 1)]:
-        ends = {"xy": (x[at + 1], y[at + 1]), "xytext": (x[at], y[at])}
-        arrow = {"arrowstyle": "-|>", "color": INK, "lw": 0.7, "mutation_scale": 11, "shrinkA": 0, "shrinkB": 0}
-        ax.annotate("", **ends, arrowprops=arrow, zorder=2.5, gid="time")
 
 
 def _mark_sections(ax, result, point, x_name, y_name):
@@ -217,16 +194,16 @@ def history(result: Result):
     names = [chosen] if chosen else [*gap, *(name for name in coordinates(result) if name.startswith("x"))]
     styles = [{"color": INK}, {"color": RIGHT, "ls": (0, (4, 1))}, {"color": LEFT, "ls": (0, (1, 1))}, {"color": FAINT}]
     for ax, point in zip(grid, points, strict=True):
-        way, stops = path(result, point), result.stops(point.place)
+        motion = stored_motion(result, point)
         for i, name in enumerate(names):
             jumps = name.startswith("v") and (name == "v1" or result.contact_normal is not None)
-            shown = way if jumps else way.joined()
+            shown = motion if jumps else motion.joined()
             ax.plot(shown.t, shown[name], label=_symbol(name), **styles[min(i, len(styles) - 1)])
-            if name == displacements(result)[0]:
+            if name == motion.names[0]:
                 rests.along(ax, shown, "t", name)
-                pressed.mark(ax, result, point, shown, "t", name)
-        for side, stop in stops.items() if displacements(result)[0] in names else ():
-            ax.axhline(stop, color=FAINT, lw=0.9, ls=DASHES if side > 0 else ":", label=stop_name(result, side))
+                contacts(ax, shown, "t", name)
+        if motion.names[0] in names:
+            levels(ax, motion, stop_names(result))
         ax.margins(x=0)
         ax.set(title=point.label, ylabel=(symbol(chosen) if chosen else "displacement") + result.unit(names[0]))
     grid[-1].set_xlabel("$t / T$ (forcing periods)")
@@ -257,30 +234,3 @@ def iteration(result: Result):
     after = "" if transient is None else f" after {transient:.0f} periods of transient"
     grid[-1].set_xlabel(("impact" if at_impact else "iteration") + " $n$" + after)
     return fig
-
-
-def _walls(ax, result, point):
-    """The stops: a line, and of a rigid one hatching where the mass cannot be."""
-    low, high = ax.get_xlim()
-    depth = 0.04 * (high - low)
-    for side, stop in result.stops(point.place).items():
-        if low < stop < high:  # an orbit that stays far away is not squeezed to show them
-            style = "-" if side > 0 else DASHES
-            ax.axvline(stop, color=FAINT, lw=0.8, ls=style, zorder=1, label=stop_name(result, side))
-            if result.compliance(side, point.place):
-                continue
-            end = stop + side * depth
-            ax.axvspan(stop, end, facecolor="none", edgecolor=FAINT, hatch="//////", linewidth=0)
-            ax.set_xlim(**{"right" if side > 0 else "left": end})
-
-
-def legend(fig):
-    """All that is labelled in its panels, each once, and what the arrows mean."""
-    named = {}
-    for ax in fig.axes:
-        handles, labels = ax.get_legend_handles_labels()
-        named = dict(zip(labels, handles, strict=True)) | named
-    if any(text.get_gid() == "time" for ax in fig.axes for text in ax.texts):
-        named["direction of time"] = Line2D([], [], color=INK, lw=0, marker=">", markersize=5)
-    if named:
-        legend_below(fig, list(named.values()), len(named), labels=list(named))

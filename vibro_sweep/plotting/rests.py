@@ -4,9 +4,9 @@ import numpy as np
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.patches import Patch
 
-from vibro_sweep.plotting.paths import Path
 from vibro_sweep.plotting.spectrum_panel import spans
 from vibro_sweep.plotting.style import SPECIAL
+from vibro_sweep.results.motion import Motion
 
 COLOUR, TINT = SPECIAL["sticking"][3], "#d3e6cf"
 NAME, NOUN = "rests on a stop for a part of the time", "a rest on a stop"
@@ -53,11 +53,11 @@ def tint(ax, result, values, order) -> None:
         spans(ax, values, there, color=TINT, gid="rest")
 
 
-def along(ax, way: Path, x: str, y: str) -> None:
+def along(ax, motion: Motion, x: str, y: str) -> None:
     """Mark the rests of a motion in the plane of two of its numbers, or over its time "t"."""
-    there = way.rests
+    there = motion.rests
     if there.any():
-        values = [np.where(there, way[name], np.nan) for name in (x, y)]
+        values = [np.where(there, motion[name], np.nan) for name in (x, y)]
         style = {"marker": "o", "ms": 6, "mew": 0} if y in ("v1", "gap_velocity") else {}
         ax.plot(*values, color=COLOUR, lw=2.4, zorder=2.2, solid_capstyle="butt", label=NOUN, gid="rest", **style)
 

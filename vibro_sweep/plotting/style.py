@@ -124,6 +124,11 @@ def stop_name(result, side) -> str:
     return f"{'right' if side > 0 else 'left'} stop, ${coordinate[1:-1]} = {where}$"
 
 
+def stop_names(result) -> dict[int, str]:
+    """The same of each side."""
+    return {side: stop_name(result, side) for side in result.sides}
+
+
 def exponent_colour(i) -> str:
     """The colour of the i-th exponent, from 0; the fifth and all below share one."""
     return EXPONENTS[i] if i < len(EXPONENTS) else FAINT

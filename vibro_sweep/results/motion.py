@@ -1,47 +1,77 @@
-"""The continuous motion of an orbit as arrays: the gap and its velocity, impacts, stops and their forces."""
+"""The continuous motion of an orbit as arrays: states over time, impacts, and stops with their forces."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.interpolate import CubicHermiteSpline
 
-from vibro_sweep.oscillator.linear import Linear
 from vibro_sweep.oscillator.stop_force import force_of
 
 
 @dataclass(frozen=True)
 class Motion:
-    """The motion of an orbit of the oscillator q, sampled.
+    """A sampled motion. Where the velocity jumps there are three samples: before the impact, NaN, and after it.
 
-    t, gap, rate : (m,); at the time of an impact the velocity before it
-    impacts : rows (t, side, velocity before, after), (k, 4)
-    positions : x1, x2, ... -> (m,), where they are asked for
+    t : (m,), in units of `unit`
+    states : x1, v1, ... -> (m,), NaN where not known; `gap` and `gap_velocity` beside them where the gap is not x1
+    impacts : rows (t, side, velocity of the gap before, after), (k, 4)
+    stops : side (+1 right, -1 left) -> where the stop stands
+    laws : side -> stiffness, damping and preload of a compliant stop
+    by_force : whether a contact ends where its force is zero
     """
 
-    q: Linear
     t: np.ndarray
-    gap: np.ndarray
-    rate: np.ndarray
-    impacts: np.ndarray = field(default_factory=lambda: np.zeros((0, 4)))
-    positions: dict[str, np.ndarray] = field(default_factory=dict)
+    unit: float
+    states: dict[str, np.ndarray]
+    impacts: np.ndarray
+    stops: dict[int, float]
+    laws: dict[int, tuple[float, float, float]]
+    by_force: bool
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        return self.t if name == "t" else self.states[name]
 
     @property
-    def stops(self) -> dict[int, float]:
-        """Side (+1 right, -1 left) -> where the stop stands, of those that there are."""
-        return {side: stop for side, stop in ((1, self.q.high), (-1, self.q.low)) if np.isfinite(stop)}
+    def names(self) -> tuple[str, str]:
+        """Of the gap, and its velocity."""
+        return ("gap", "gap_velocity") if "gap" in self.states else ("x1", "v1")
 
     @property
-    def soft(self) -> dict[int, float]:
-        """The same of compliant stops."""
-        return {side: stop for side, stop in self.stops.items() if self.q.is_compliant(side)}
+    def rests(self) -> np.ndarray:
+        """Whether the mass rests on a stop, bool (m,)."""
+        gap, rate = (self[name] for name in self.names)
+        return np.isin(gap, list(self.stops.values())) & (rate == 0)
+
+    def joined(self) -> "Motion":
+        """Without the gaps in the jumps: positions go on through an impact, and velocities that it does not change."""
+        there = np.isfinite(self["x1"])
+        return replace(self, t=self.t[there], states={name: values[there] for name, values in self.states.items()})
+
+    def finer(self, times: int) -> "Motion":
+        """A joined motion with so many times the samples, of the gap and its velocity alone: cubic between samples, so
+        that contacts begin and end where they do."""
+        t, x, v = self.unit * self.t, *(self[name] for name in self.names)
+        parts = np.split(np.arange(len(t)), np.flatnonzero(np.diff(t) <= 0) + 1)
+        splines = [CubicHermiteSpline(t[one], x[one], v[one]) for one in parts if len(one) > 1]
+        at = [np.interp(np.arange((len(s.x) - 1) * times + 1) / times, np.arange(len(s.x)), s.x) for s in splines]
+        values = ([s(t, n) for s, t in zip(splines, at, strict=True)] for n in (0, 1))
+        states = dict(zip(self.names, map(np.concatenate, values), strict=True))
+        return replace(self, t=np.concatenate(at) / self.unit, states=states)
 
     def force(self, side: int) -> tuple[np.ndarray, np.ndarray]:
         """The force of the stop on this side, and by how much it is pressed in, (m,); of a rigid one 0."""
-        q = self.q
-        law = (q.k_high, q.c_high, q.p_high) if side > 0 else (q.k_low, q.c_low, q.p_low)
-        delta, speed = side * (self.gap - self.stops[side]), side * self.rate
-        return force_of(self.t, delta, speed, law if side in self.soft else None, q.by_force)
+        gap, rate = (self[name] for name in self.names)
+        delta, speed = side * (gap - self.stops[side]), side * rate
+        return force_of(self.unit * self.t, delta, speed, self.laws.get(side), self.by_force)
 
-    @property
-    def pressed(self) -> np.ndarray:
-        """Whether a compliant stop is pressed, bool (m,)."""
-        return np.any([np.zeros(len(self.t), bool), *(self.force(side)[0] != 0 for side in self.soft)], axis=0)
+
+def with_jumps(t: np.ndarray, states: dict[str, np.ndarray], at: dict[str, tuple]) -> dict[str, np.ndarray]:
+    """Sampled states, and t, with three rows put in at each impact.
+
+    at : name -> its values before, in the jump, and after, (k,) each, of all states and of t
+    """
+    place = np.repeat(np.searchsorted(t, at["t"][0]), 3)
+    return {
+        name: np.insert(values, place, np.stack(at[name], axis=1).ravel())
+        for name, values in (states | {"t": t}).items()
+    }

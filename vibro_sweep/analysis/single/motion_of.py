@@ -8,7 +8,8 @@ import numpy as np
 from vibro_sweep.analysis.single.result import shows_force
 from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.oscillator.linear import Linear, forcing_period
-from vibro_sweep.results.motion import Motion
+from vibro_sweep.results.motion import Motion, with_jumps
+from vibro_sweep.tables.coordinates import state
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -31,28 +32,41 @@ def motion_of(orbit: Any, q: Linear, begin: float, end: float, repeats: bool = F
     impacts, struck = impacts[chosen], struck[chosen]
     touched, released = contacts["t_touch"], np.nan_to_num(contacts["t_release"], nan=end)
     inside = within(touched + (released - touched) * np.linspace(EDGE, 1 - EDGE, IN_CONTACT)[:, None]).ravel()
-    even = np.linspace(begin, end, max(2, round((end - begin) / forcing_period(q) * SAMPLES)))
+    count = round((end - begin) / forcing_period(q) * SAMPLES) + repeats  # of one period the end is the beginning
+    even = np.linspace(begin, end, max(2, count))
     times = np.unique(np.concatenate([even, struck, inside[(inside >= begin) & (inside <= end)]]))
     motion = sampled(orbit, q, times)
-    at, sides, speeds = np.searchsorted(times, struck), impacts["side"], impacts["v1"]
-    motion.gap[at], motion.rate[at] = q.stop(sides), speeds  # before the impact
-    return replace(motion, impacts=np.stack([struck, sides, speeds, -q.restitution(sides) * speeds], axis=1))
+    at, sides, before = np.searchsorted(times, struck), impacts["side"], impacts["v1"]
+    after, jump = -q.restitution(sides) * before, np.full(len(at), np.nan)
+    rows = {name: (values[at], jump, values[at]) for name, values in motion.states.items()} | {"t": 3 * (struck,)}
+    gap, rate = motion.names
+    if gap != "x1":  # all velocities jump: after it they are those of the next sample
+        rows |= {name: (values[at], jump, jump) for name, values in motion.states.items() if name.startswith("v")}
+    rows |= {gap: (q.stop(sides), jump, q.stop(sides)), rate: (before, jump, after)}
+    kept = np.isin(times, struck, invert=True)
+    states = with_jumps(times[kept], {name: values[kept] for name, values in motion.states.items()}, rows)
+    return replace(motion, t=states.pop("t"), states=states, impacts=np.stack([struck, sides, before, after], axis=1))
 
 
 def sampled(orbit: Any, q: Linear, times: np.ndarray) -> Motion:
-    """The motion at these times, and the positions of its masses."""
-    states = orbit.sample(times)
-    positions = {f"x{i}": values for i, values in enumerate(states[:, 0::2].T, 1)}
-    return Motion(q, times, states[:, 0::2] @ q.normal, states[:, 1::2] @ q.normal, positions=positions)
+    """The motion at these times, without its impacts."""
+    found = orbit.sample(times)
+    states = dict(zip(state(found.shape[1] // 2), found.T, strict=True))
+    if not (q.normal[0] == 1 and not q.normal[1:].any()):
+        states |= {"gap": found[:, 0::2] @ q.normal, "gap_velocity": found[:, 1::2] @ q.normal}
+    stops = {side: stop for side, stop in ((1, q.high), (-1, q.low)) if np.isfinite(stop)}
+    laws = {1: (q.k_high, q.c_high, q.p_high), -1: (q.k_low, q.c_low, q.p_low)}
+    laws = {side: laws[side] for side in stops if q.is_compliant(side)}
+    return Motion(times, 1.0, states, np.zeros((0, 4)), stops, laws, bool(q.by_force))
 
 
 def orbit_figure(motion: Motion, kind: str | None, title: str, system: Any, names, width: float | None) -> "Figure":
     """The picture of an orbit that `kind` asks for. Raises ArgumentError for another word, and for forces of rigid
     stops."""
-    from vibro_sweep.plotting.periodic import forces, portrait_and_history
+    from vibro_sweep.plotting.single_orbit import forces, portrait_and_history
 
     if not shows_force(kind):
         return portrait_and_history(motion, title, system, names, width)
-    if not motion.soft:
+    if not motion.laws:
         raise ArgumentError('kind "contact-force": the stops of this orbit are rigid')
     return forces(motion, title, system, names, width)

@@ -3,7 +3,7 @@
 from __future__ import annotations  # help() says ArrayLike, and not all that this may be
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -148,8 +148,9 @@ class Orbit(Result):
         from vibro_sweep.plotting.film import FRAMES, film_of
 
         times = np.linspace(*self._last(checked_count("periods", periods, 1)), 8 * FRAMES)
-        name, title = "x1" if self.system.gap_is_x1 else "gap", f"b = {self.system.b:.6g}"
-        return film_of(sampled(self, self.system.linear, times), name, self.system.period, title).animation()
+        motion, period = sampled(self, self.system.linear, times), self.system.period
+        motion = replace(motion, t=times / period, unit=period)
+        return film_of(motion, f"b = {self.system.b:.6g}").animation()
 
     def _last(self, periods: int) -> tuple[float, float]:
         """Begin and end of the last forcing periods that were simulated. Raises ArgumentError where there are none."""
