@@ -175,3 +175,10 @@ def test_physical_system_from_numpy_numbers(kind):
 
 def test_py_typed_is_in_the_package():
     assert (Path(vs.__file__).parent / "py.typed").exists()
+
+
+def test_an_orbit_waits_for_no_slow_import():
+    """What draws, and splines, is imported when something is drawn."""
+    code = "import sys, vibro_sweep as vs; vs.simulate, vs.periodic_orbit; print(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert not {"matplotlib", "scipy.interpolate", "pandas", "xarray", "h5py"} & {*done.stdout.split()}

@@ -3,7 +3,6 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.interpolate import CubicHermiteSpline
 
 from vibro_sweep.oscillator.stop_force import force_of
 
@@ -50,6 +49,8 @@ class Motion:
     def finer(self, times: int) -> "Motion":
         """A joined motion with so many times the samples, of the gap and its velocity alone: cubic between samples, so
         that contacts begin and end where they do."""
+        from scipy.interpolate import CubicHermiteSpline  # slow to import
+
         t, x, v = self.unit * self.t, *(self[name] for name in self.names)
         parts = np.split(np.arange(len(t)), np.flatnonzero(np.diff(t) <= 0) + 1)
         splines = [CubicHermiteSpline(t[one], x[one], v[one]) for one in parts if len(one) > 1]
