@@ -5,7 +5,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Collection
 from dataclasses import dataclass, field, fields
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, Self, TypeVar
 
 from vibro_sweep.checks.refusals import cut
 from vibro_sweep.oscillator import wording
@@ -25,12 +25,14 @@ class AnyScene(ABC):
 
     source : the file that it was read from
     given : the YAML text that it was read from; None of a copy with other values
+    checked : whether it was made from data, which were checked; `dataclasses.replace` makes one that is not
     """
 
     name: str
     system: Oscillator
     source: Path | None = field(default=None, kw_only=True)
-    given: str | None = field(default=None, kw_only=True, init=False)
+    given: str | None = field(default=None, init=False)
+    checked: bool = field(default=False, init=False)
 
     @abstractmethod
     def data(self) -> dict[str, Any]:
@@ -60,6 +62,12 @@ class AnyScene(ABC):
         kind = "" if system.model.name == DEFAULT else f"{system.model.name}: "
         return textwrap.fill(f"  system    {kind}{said}", 88, subsequent_indent=12 * " ", break_long_words=False)
 
+    def with_origin(self, **about: object) -> Self:
+        """This scene, of a new one: where it is from, its text, that it was checked. No arguments of the class, since
+        `dataclasses.replace` would hand them on to a scene that says something else."""
+        vars(self).update(about)
+        return self
+
     def _check_names(self, changes: Collection[str]) -> None:
         """Raise SceneError for a name that is no attribute that says what is computed."""
         about = [one.name for one in fields(AnyScene)]
@@ -77,5 +85,4 @@ def parsed(text: str, name: str, source: Path | None, scene_of: Callable[[object
         raise SceneError(name, [str(error)]) from None
     except SceneError as error:
         raise SceneError(name, located(error.problems, lines_of(text))) from None
-    vars(scene).update(given=text, source=source)  # no argument: `dataclasses.replace` would hand the text on
-    return scene
+    return scene.with_origin(given=text, source=source)

@@ -1,7 +1,7 @@
 """From a YAML text to a Scene: everything that a computation needs to know, checked as a whole."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -107,7 +107,7 @@ class Scene(AnyScene):
         data = self.data()
         if isinstance(self.system, Built):  # there is no text for what the function does: its matrices stand for it
             return yaml_of(data | {"system": data["system"] | {"matrices": digest(self.system, self.sweep)}})
-        return parse_scene(yaml_of(data), self.name).text
+        return yaml_of(data) if self.checked else parse_scene(yaml_of(data), self.name).text
 
     def data(self) -> dict[str, Any]:
         """The data that its YAML holds; numbers that are the default are left out."""
@@ -145,7 +145,7 @@ class Scene(AnyScene):
         state, count = array_of(changes.get("start"), 1), 2 * result.system.masses
         if state is not None and len(state) != count:
             raise SceneError(self.name, [problem("start", state.tolist(), f"must be {count} numbers")])
-        return replace(result, source=self.source)
+        return result.with_origin(source=self.source)
 
     @property
     def n_starts(self) -> int:
@@ -271,4 +271,4 @@ def scene_of(data: object, name: str, built: Built | None = None) -> Scene:
     )
     if problems := size_problems(scene):
         raise SceneError(name, problems)
-    return scene
+    return scene.with_origin(checked=True)
