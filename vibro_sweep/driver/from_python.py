@@ -88,7 +88,7 @@ def sweep(
     >>> bool(data.lyapunov.sel(b=4.2, exponent=1, method="nearest") < 0)
     True
     """
-    built, first = None, {}
+    first: dict[str, float] = {}
     check_type("axes", axes, Mapping, "a mapping from names to values")
     for name in axes:
         check_type("axes", name, str, "of names")
@@ -101,26 +101,18 @@ def sweep(
             raise ArgumentTypeError(
                 not_allowed("system", system, f"a System, an Oscillator, or a function of {', '.join(first)}")
             )
-        built = Built(system, first)
-    else:
-        checked_system(system)
+        system = Built(system, first)
+    checked_system(system)
     if start is not None and not isinstance(start, (str, Mapping, Start)):
-        checked_state(start, (built or system).masses, "start")
-    given = {
-        "system": {"build": built.name, "stops": built.options["stops"]} if built else system,
-        "sweep": axes,
-        "start": start,
-        "transient": transient,
-        "settle": settle,
-        "record": record,
-    }
+        checked_state(start, system.masses, "start")
+    given = {"sweep": axes, "start": start, "transient": transient, "settle": settle, "record": record}
     given |= {"section": section, "observe": observe, "trajectory": trajectory}
-    scene = scene_of(changed({}, given), "sweep", built=built)
-    if built is not None:
+    scene = scene_of({"system": system} | changed({}, given), "sweep")
+    if isinstance(system, Built):
         for corner in itertools.product(
             *(values[[0, -1]].tolist() for name, values in scene.sweep.items() if name in first)
         ):
-            built.compare_units(first | dict(zip(first, corner, strict=True)))
+            system.compare_units(first | dict(zip(first, corner, strict=True)))
     quantities = layout.quantities(scene)
     taken = {*quantities, *(own for one in quantities.values() for own in one.dimensions)}
     taken |= {"start"} if scene.n_starts > 1 else set()

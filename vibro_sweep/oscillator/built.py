@@ -63,8 +63,12 @@ class Built(Oscillator):
         return _name(self.function)
 
     @property
+    def stops(self) -> str:
+        return self.base.options.get("stops", "both")
+
+    @property
     def options(self) -> dict[str, Any]:
-        return {BUILD: self.name, "stops": self.base.options.get("stops", "both")}
+        return {BUILD: self.name, "stops": self.stops}
 
     @property
     def family(self) -> Family:

@@ -52,7 +52,7 @@ class AnyScene(ABC):
         """The files that its run must not write to."""
         return [self.source] if self.source else []
 
-    def system_text(self, without: Collection[str]) -> str:
+    def _system_text(self, without: Collection[str]) -> str:
         """The oscillator in a few lines, but for numbers that change."""
         system = self.system
         usual = {"offset": 0.0}  # which most oscillators have
@@ -62,7 +62,7 @@ class AnyScene(ABC):
         kind = "" if system.model.name == DEFAULT else f"{system.model.name}: "
         return textwrap.fill(f"  system    {kind}{said}", 88, subsequent_indent=12 * " ", break_long_words=False)
 
-    def with_origin(self, **about: object) -> Self:
+    def _with_origin(self, **about: object) -> Self:
         """This scene, of a new one: where it is from, its text, that it was checked. No arguments of the class, since
         `dataclasses.replace` would hand them on to a scene that says something else."""
         vars(self).update(about)
@@ -85,4 +85,4 @@ def parsed(text: str, name: str, source: Path | None, scene_of: Callable[[object
         raise SceneError(name, [str(error)]) from None
     except SceneError as error:
         raise SceneError(name, located(error.problems, lines_of(text))) from None
-    return scene.with_origin(given=text, source=source)
+    return scene._with_origin(given=text, source=source)

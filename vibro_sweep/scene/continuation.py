@@ -89,7 +89,7 @@ class Continuation(AnyScene):
 
     def __str__(self) -> str:
         """A few lines on what is followed."""
-        system = self.system_text(self.parameter)
+        system = self._system_text(self.parameter)
         ranges = ", ".join(f"{key} = {lo:g} .. {hi:g}" for key, (lo, hi) in self.parameter.items())
         begin = "the free motion" if self.origin == "free" else f"{self.origin} {self.begin}"
         begin += f", special point {self.special}" if self.special is not None else ""

@@ -8,22 +8,24 @@ import operator
 from collections.abc import Iterable
 from typing import Annotated, Literal, get_args
 
-from pydantic import ConfigDict, Discriminator, Field, Strict, Tag, WithJsonSchema, create_model
+from pydantic import ConfigDict, Discriminator, Field, InstanceOf, Strict, Tag, WithJsonSchema, create_model
 
 from vibro_sweep.checks.arguments import MAX_COUNT
 from vibro_sweep.checks.meant import SYNONYMS
 from vibro_sweep.oscillator.built import Built
 from vibro_sweep.oscillator.models import DEFAULT, MODELS
 from vibro_sweep.oscillator.models.declaration import Model
+from vibro_sweep.oscillator.oscillator import Oscillator
 from vibro_sweep.tables.coordinates import coordinates
 from vibro_sweep.tables.observables import WORDS
 from vibro_sweep.tables.picture_kinds import PICTURES
 from vibro_sweep.tables.quantity import Parameter
 
 from .continue_form import continue_form
-from .fields import WHICH, Form, Whole, given, keys, swept
+from .fields import Form, Whole, given, keys, swept
 from .systems import PhysicalSystemForm, form_of
 
+MADE = InstanceOf[Oscillator]
 SHOWN = 8  # masses that the JSON Schema knows the coordinates of
 
 
@@ -145,16 +147,15 @@ Observation = Annotated[Literal[tuple(WORDS)], WithJsonSchema(_WORDS)]
 
 
 @functools.cache
-def scene_form(name: str, masses: int) -> type[Form]:
-    """The form of scenes of a model, with so many masses."""
+def scene_form(name: str, masses: int, made: bool = False) -> type[Form]:
+    """The form of scenes of a model, with so many masses. made : its `system` is an Oscillator"""
     model = MODELS[name]
-    return _scene_form(_systems([model]), model.flat(masses).values(), masses)
+    return _scene_form(MADE if made else _systems([model]), model.flat(masses).values(), masses)
 
 
 def built_form(built: Built) -> type[Form]:
-    """The form of a sweep whose oscillators a function makes; its `system` names the function."""
-    system = create_model("BuiltForm", __base__=Form, build=(str, ...), stops=WHICH)
-    return _scene_form(system, built.described.values(), built.masses)
+    """The form of a sweep whose oscillators a function makes."""
+    return _scene_form(MADE, built.described.values(), built.masses)
 
 
 def _scene_form(system, numbers: Iterable[Parameter], masses: int) -> type[Form]:

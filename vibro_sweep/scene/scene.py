@@ -10,9 +10,10 @@ import numpy as np
 from pydantic import ValidationError
 
 from vibro_sweep.checks.real import array_of
-from vibro_sweep.oscillator.built import BUILD, Built
+from vibro_sweep.oscillator.built import Built
 from vibro_sweep.oscillator.grid import digest, grid
 from vibro_sweep.oscillator.models import MODELS
+from vibro_sweep.oscillator.oscillator import Oscillator
 from vibro_sweep.tables.coordinates import START, start
 from vibro_sweep.tables.units import NONE, unit_in
 
@@ -145,7 +146,7 @@ class Scene(AnyScene):
         state, count = array_of(changes.get("start"), 1), 2 * result.system.masses
         if state is not None and len(state) != count:
             raise SceneError(self.name, [problem("start", state.tolist(), f"must be {count} numbers")])
-        return result.with_origin(source=self.source)
+        return result._with_origin(source=self.source)
 
     @property
     def n_starts(self) -> int:
@@ -203,7 +204,7 @@ class Scene(AnyScene):
             section += ", at the extreme of the free motion; with tau: 0 at the same phase of the force for all omega"
         lines = [
             " x ".join(axes) or "one point",
-            self.system_text(self.sweep),
+            self._system_text(self.sweep),
             f"  orbits    {starts[self.start.kind]}; {self._transient} + {self.record:,} forcing periods",
             f"  section   {section}",
             f"  observe   {', '.join(sorted(self.observe)) or 'nothing'}",
@@ -231,23 +232,22 @@ def parse_scene(text: str, name: str = "scene", source: Path | None = None) -> S
     return parsed(text, name, source, scene_of)
 
 
-def scene_of(data: object, name: str, built: Built | None = None) -> Scene:
-    """A Scene from the data that its YAML holds. Raises SceneError.
-
-    built : an oscillator that a function makes, in place of `system`
-    """
+def scene_of(data: object, name: str) -> Scene:
+    """A Scene from the data that its YAML holds; `system` may be an Oscillator. Raises SceneError."""
     if isinstance(data, dict) and "continue" in data:
         raise SceneError(name, ["continue: this is a scene of branches or curves; it sweeps nothing"])
-    kind, masses = kind_of(data, name) if built is None else (BUILD, built.masses)
-    numbers = MODELS[kind].flat(masses) if built is None else built.described
-    scheme = scene_form(kind, masses) if built is None else built_form(built)
+    made = data.get("system") if isinstance(data, dict) else None
+    kind, masses = (made.model.name, made.masses) if isinstance(made, Oscillator) else kind_of(data, name)
+    numbers = made.described if isinstance(made, Built) else MODELS[kind].flat(masses)
+    scheme = built_form(made) if isinstance(made, Built) else scene_form(kind, masses, isinstance(made, Oscillator))
     try:
         form = scheme.model_validate(data)
     except ValidationError as error:
-        raise SceneError(name, form_problems(error, scheme, data)) from None
+        written = data | {"system": system_data(made, ())} if isinstance(made, Oscillator) else data
+        raise SceneError(name, form_problems(error, scheme, written)) from None
 
     sweep, problems = sweep_of(form, data.get("sweep"), numbers)
-    system, more = system_of(form, sweep, kind, masses) if built is None else (built, [])
+    system, more = system_of(form, sweep, kind, masses)
     problems += more + start_problems(form, sweep, system, masses) + combination_problems(form, data, system)
     problems += stop_problems(sweep, system) if system is not None else []
     if problems:
@@ -271,4 +271,4 @@ def scene_of(data: object, name: str, built: Built | None = None) -> Scene:
     )
     if problems := size_problems(scene):
         raise SceneError(name, problems)
-    return scene.with_origin(checked=True)
+    return scene._with_origin(checked=True)

@@ -4,6 +4,7 @@ import numpy as np
 
 from vibro_sweep.checks.meant import did_you_mean
 from vibro_sweep.checks.refusals import ParameterError
+from vibro_sweep.oscillator.built import Built
 from vibro_sweep.oscillator.checked_numbers import check_value
 from vibro_sweep.oscillator.models import DEFAULT, MODELS
 from vibro_sweep.oscillator.models.declaration import OF_STOPS, entries
@@ -58,6 +59,8 @@ def _number_problems(path: str, number: Parameter, value, stops: str) -> list[st
 
 def system_of(form: Form, sweep, kind: str, masses: int) -> tuple[Oscillator | None, list[str]]:
     """The base system with the first swept values in it, or None and what is wrong."""
+    if isinstance(form.system, Built):
+        return form.system, []
     model = MODELS[kind]
     numbers = model.flat(masses)
     first = {key: float(values[0]) for key, values in sweep.items() if key in numbers}
@@ -70,6 +73,8 @@ def system_of(form: Form, sweep, kind: str, masses: int) -> tuple[Oscillator | N
         except ParameterError as error:
             path = "sweep" if error.key in first else "system.physical" if error.key in physical else "system"
             return None, [problem(f"{path}.{error.key}", error.value, f"must be {error.allowed}")]
+    if isinstance(form.system, Oscillator):
+        return _with_numbers(form.system, first)
     axes = getattr(form, "sweep", None)  # scenes of branches have none
     swept = axes.model_fields_set.intersection(numbers) if axes else set()
     problems, given = [], {}
@@ -94,6 +99,15 @@ def system_of(form: Form, sweep, kind: str, masses: int) -> tuple[Oscillator | N
     given |= {one.name: getattr(form.system, one.name) for one in model.options}
     try:
         system = Oscillator.named(kind, **given)
+    except ParameterError as error:
+        path = "sweep" if error.key in first else "system"
+        return None, [problem(f"{path}.{error.key}", error.value, f"must be {error.allowed}")]
+    return _with_numbers(system, first)
+
+
+def _with_numbers(system: Oscillator, first: dict[str, float]) -> tuple[Oscillator | None, list[str]]:
+    """The system with the first swept values in it, or None and what is wrong."""
+    try:
         return system.replace(**first) if first else system, []
     except ParameterError as error:
         path = "sweep" if error.key in first else "system"
