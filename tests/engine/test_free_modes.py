@@ -6,8 +6,8 @@ from support import slow_cases
 from support.frames import frame_of_one
 
 import vibro_sweep as vs
+from vibro_sweep.engine.coordinates import frame
 from vibro_sweep.engine.period_map import PeriodMap
-from vibro_sweep.oscillator import frame
 
 CASES = pytest.mark.parametrize(
     ("k", "c", "stop_at"),
