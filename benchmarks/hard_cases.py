@@ -85,7 +85,7 @@ def grazes(quick: bool) -> dict:
     """Missed and invented impacts of each method for each decade, and of how many flights."""
     from reference import certified
 
-    reference, rng = certified.of_paper(SYSTEM.given), np.random.default_rng(1)
+    reference, rng = certified.of_paper(SYSTEM.arguments), np.random.default_rng(1)
     count = 200 if quick else 1000
     sets = [[flights(reference, k, behind, count, rng) for behind in (True, False)] for k in DECADES]
     methods, found = {OURS: (ours, count)}, {}

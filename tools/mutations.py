@@ -36,7 +36,7 @@ SUBJECTS = {  # folders of the slow tests of a room
 OF_PYTHON = {
     "functools.cache",
     "cache",
-    "remembered",
+    "memoised",
     "dataclass",
     "property",
     "np.errstate",

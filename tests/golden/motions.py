@@ -20,7 +20,7 @@ ZERO = 1e-30  # smaller multipliers are not told apart
 
 def system_record(system) -> dict:
     """What `system_of` makes the oscillator of."""
-    return {"type": system.model.name} | {name: _plain(value) for name, value in system.given.items()}
+    return {"type": system.model.name} | {name: _plain(value) for name, value in system.arguments.items()}
 
 
 def system_of(record: dict):

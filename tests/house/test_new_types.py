@@ -56,7 +56,7 @@ seesaw = vs.Oscillator.named("pendulum", length=2.0, omega=0.9, R=0.7, b=0.3)
 mass = vs.Oscillator.named("one_mass", k=0.5, zeta=0.0, F=1, omega=0.9, R=0.7, b=0.3, tau=0.0)
 data = swept(seesaw.replace(tau=0.0), {"length": [1.0, 2.0]}).isel(length=1)
 other = swept(mass, {"b": [0.3]}).isel(b=0)
-special = [float(np.abs(data.x1 - other.x1).max()), seesaw.named("pendulum", **seesaw.given) == seesaw]
+special = [float(np.abs(data.x1 - other.x1).max()), seesaw.named("pendulum", **seesaw.arguments) == seesaw]
 """
 )
 TABLE, TESTS = "tables/bifurcations.py", "engine/continuation/branch_tests.py"

@@ -109,7 +109,7 @@ class TestEveryModel:
 
 def _yaml(one):
     kind = {} if one.model.name == "two_mass" else {"type": one.model.name}
-    given = {} if one.model.name == "two_mass" else {k: v for k, v in one.given.items() if v is not None}
+    given = {} if one.model.name == "two_mass" else {k: v for k, v in one.arguments.items() if v is not None}
     given = given or {name: value for name, value in PAPER.items()}
     text = ", ".join(
         f"{key}: {str(value).lower() if isinstance(value, bool) else value}" for key, value in (kind | given).items()

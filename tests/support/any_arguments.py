@@ -53,7 +53,7 @@ def draws(made: dict, part: int) -> Iterator[tuple[str, str, str, dict, Call]]:
     for name, argument, kind, place in bad[part::PARTS]:
         value = values[kind]()
         value = value if place < 0 else inside(argument, value)[place]
-        changed = {"F": value} if argument == "given" else {argument: value}
+        changed = {"F": value} if argument == "arguments" else {argument: value}
         yield name, argument, kind, table[name].given(changed), table[name]
     choose, weights = random.Random(f"valid {part}"), [1 if name in COMPUTING else SLOW for name in table]
     for name in choose.choices(list(table), weights, k=len(bad) // PARTS // 3):

@@ -142,7 +142,8 @@ def calls(made: dict[str, Any]) -> dict[str, Call]:
     of_contact |= each("b", 1, np.float64(0.5)) | each("offset", 0.0, 1) | each("R", 0.8, 1) | each("R_left", None, 0.5)
     of_contact |= each("stops", "both", "left") | OF_STOPS
     of_model = each("name", "one_mass", np.str_("one_mass"))
-    of_model["given"] = [{"zeta": 0.1, "F": 1, "omega": 1, "R": 0.5, "b": 0.3, "base": one} for one in (True, False)]
+    of_one_mass = {"zeta": 0.1, "F": 1, "omega": 1, "R": 0.5, "b": 0.3}
+    of_model["arguments"] = [of_one_mass | {"base": base} for base in (True, False)]
     simulated, mapping, scene = made["Orbit"], made["DiscontinuityMap"], made["Scene"]
     times = each("times", 0.0, [0.0, 1.0], np.array([1.0]), [], xr.DataArray([0.5]), range(2))
     return {

@@ -79,16 +79,16 @@ def checked_flag(name: str, value) -> bool:
     return bool(value)
 
 
-def check_call(name: str, value: object, example: str, *given: Any) -> None:
+def check_call(name: str, value: object, example: str, *arguments: Any) -> None:
     """Raise TypeError unless `value` is None, or can be called as in the example, with as many arguments as `given`.
 
     Nor is it a class, of which each call would only make another object.
     """
-    if value is not None and (isinstance(value, type) or not accepts(value, *given)):
+    if value is not None and (isinstance(value, type) or not accepts(value, *arguments)):
         raise ArgumentTypeError(not_allowed(name, value, f"callable as {example}"))
 
 
-def accepts(function: object, *given: Any, **named: Any) -> bool:
+def accepts(function: object, *arguments: Any, **named: Any) -> bool:
     """Whether this can be called so, as far as it says."""
     if not callable(function):
         return False
@@ -97,7 +97,7 @@ def accepts(function: object, *given: Any, **named: Any) -> bool:
     except (TypeError, ValueError):  # written in C, mostly: it does not say
         return not isinstance(function, type)
     try:
-        signature.bind(*given, **named)
+        signature.bind(*arguments, **named)
     except TypeError:
         return False
     return True
@@ -108,25 +108,25 @@ def names_its_arguments(function: F) -> F:
     signature, name = inspect.signature(function), function.__qualname__.removesuffix(".__init__")
 
     @functools.wraps(function)
-    def called(*given, **named):
-        bound(name, signature, *given, **named)
-        return function(*given, **named)
+    def called(*arguments, **named):
+        bound(name, signature, *arguments, **named)
+        return function(*arguments, **named)
 
     return called  # type: ignore[return-value]
 
 
-def bound(name: str, signature: inspect.Signature, /, *given: Any, **named: Any) -> inspect.BoundArguments:
+def bound(name: str, signature: inspect.Signature, /, *arguments: Any, **named: Any) -> inspect.BoundArguments:
     """The arguments of a call by their names. Raises TypeError where they are not those of the signature."""
     try:
-        return signature.bind(*given, **named)
+        return signature.bind(*arguments, **named)
     except TypeError as error:
-        kinds = {one.name: one.kind for one in signature.parameters.values() if one.name != "self"}
+        kinds = {name: parameter.kind for name, parameter in signature.parameters.items() if name != "self"}
         any_name = inspect.Parameter.VAR_KEYWORD in kinds.values()
         unknown = [] if any_name else [cut(word) for word in named if word not in kinds]
-        what = f"{', '.join(unknown)}: no such argument" if unknown else str(error)
+        wrong = f"{', '.join(unknown)}: no such argument" if unknown else str(error)
         why = why_not_computed(unknown[0]) if unknown else None
         known = (did_you_mean(unknown[0], kinds) if unknown else "") + f"it takes {', '.join(kinds)}"
-        raise ArgumentTypeError(f"{name}: {what}; {why or known}") from None
+        raise ArgumentTypeError(f"{name}: {wrong}; {why or known}") from None
 
 
 def check_type(name: str, value: object, kinds: type | tuple[type, ...], allowed: str) -> None:

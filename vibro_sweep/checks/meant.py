@@ -65,5 +65,5 @@ def meant(word: object, options: Iterable[str]) -> str | None:
 
 def did_you_mean(word: object, options: Iterable[str]) -> str:
     """The beginning of a refusal of a word that is not one of these."""
-    found = meant(word, options)
-    return f"did you mean `{found}`? " if found else ""
+    likely = meant(word, options)
+    return f"did you mean `{likely}`? " if likely else ""

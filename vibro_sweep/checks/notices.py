@@ -39,8 +39,8 @@ def _is_worker() -> bool:
 def shown() -> bool:
     """Whether what is not a warning goes to stderr: nobody has silenced it, or shows it elsewhere."""
     logger = logging.getLogger(NAME)
-    own = next((handler for handler in logger.handlers if isinstance(handler, _Notices)), None)
-    return own is not None and logger.isEnabledFor(logging.INFO) and not own.others(NAME) and not _is_worker()
+    ours = next((handler for handler in logger.handlers if isinstance(handler, _Notices)), None)
+    return ours is not None and logger.isEnabledFor(logging.INFO) and not ours.others(NAME) and not _is_worker()
 
 
 def begin() -> None:

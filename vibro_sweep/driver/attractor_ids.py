@@ -45,9 +45,9 @@ def number_attractors(scene: Scene, read: Callable[[str], np.ndarray], room: int
     follower = Follower(scene.system.masses)
     for part, order in _curve(tuple(scene.shape[axis] for axis in keys), max(1, room // orbits)):
         box = [slice(0, extent) for extent in scene.shape]
-        for axis, one in zip(keys, part, strict=True):
-            box[axis] = one
-        axes = {names[axis]: scene.sweep[names[axis]][one] for axis, one in zip(keys, part, strict=True)}
+        for axis, interval in zip(keys, part, strict=True):
+            box[axis] = interval
+        axes = {names[axis]: scene.sweep[names[axis]][interval] for axis, interval in zip(keys, part, strict=True)}
         numbers = grid(scene.system, axes)
         system = [numbers[name].reshape(-1)[order] for name in ("omega", "b")]
         _number_points(file, tuple(box), keys, order, system, follower, scene.start.kind == "follow")
@@ -71,7 +71,7 @@ def _curve(shape: tuple[int, ...], size: int) -> Iterator[tuple[Box, np.ndarray]
 
 def _order(part: Box) -> np.ndarray:
     """The places in a part of the curve of its points."""
-    order = np.arange(math.prod(one.stop - one.start for one in part))
+    order = np.arange(math.prod(interval.stop - interval.start for interval in part))
     if len(part) == 2:
         order = order.reshape(-1, part[1].stop - part[1].start)
         backwards = np.arange(part[0].start, part[0].stop) % 2 == 1
@@ -107,8 +107,8 @@ def _number_points(
         first[:, n] = np.where(members.any(axis=1), members.argmax(axis=1), NOWHERE)
     order = np.argsort(first, axis=1)  # as starts meet them, however they were found
     first = np.take_along_axis(first, order, axis=1)
-    found = follower.number(known(np.where(first == NOWHERE, -1, first), *orbits, *system))
-    number = np.pad(np.take_along_axis(found, np.argsort(order, axis=1), axis=1), [(0, 0), (1, 0)])
+    numbered = follower.number(known(np.where(first == NOWHERE, -1, first), *orbits, *system))
+    number = np.pad(np.take_along_axis(numbered, np.argsort(order, axis=1), axis=1), [(0, 0), (1, 0)])
     put("attractor_id", np.where(rank == BAD, BAD, np.take_along_axis(number, label, axis=1)))
     if follow:
         rank = np.where(rank == BAD, BAD, label)

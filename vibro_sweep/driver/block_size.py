@@ -14,13 +14,13 @@ PER_WORKER = 8  # blocks at least, so that workers end together
 class BlockSize:
     """A number of points that is called for each block, and learns from those that are computed."""
 
-    def __init__(self, scene: Scene, missing: int, workers: int, seconds: float, asked: int | None):
+    def __init__(self, scene: Scene, missing: int, workers: int, seconds: float, fixed: int | None):
         """missing : orbits. seconds : that a block takes at most, but the first ones. asked : a fixed number instead;
         fewer where memory is short."""
         starts = 1 if scene.start.kind == "follow" else scene.n_starts  # orbits of a point in one block
         by_memory, fair = orbits_per_block(scene, workers) / starts, missing / starts / (PER_WORKER * workers)
-        self.most = max(1, int(min(by_memory, asked or fair)))
-        self.least = self.most if asked else min(self.most, max(1, LANES // starts))
+        self.most = max(1, int(min(by_memory, fixed or fair)))
+        self.least = self.most if fixed else min(self.most, max(1, LANES // starts))
         self.points, self.seconds = self.least, seconds
 
     def __call__(self) -> int:

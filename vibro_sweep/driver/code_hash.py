@@ -39,8 +39,8 @@ LIBRARIES = ("numpy", "numba", "llvmlite")
 
 def sources() -> list[Path]:
     """The modules that numbers depend on."""
-    found = (HOME / name for name in SOURCES)
-    return sorted(path for one in found for path in (one.rglob("*.py") if one.is_dir() else [one]))
+    entries = (HOME / name for name in SOURCES)
+    return sorted(path for entry in entries for path in (entry.rglob("*.py") if entry.is_dir() else [entry]))
 
 
 @functools.cache  # of the sources as they were imported
@@ -69,5 +69,5 @@ def has_fused_multiply_add() -> bool:
 
 def blas_kernels() -> list[str]:
     """The processors that NumPy's BLAS computes for, as "Haswell"; the variable OPENBLAS_CORETYPE chooses another."""
-    found = threadpool_info()
-    return sorted({one["architecture"] for one in found if one["user_api"] == "blas" and "architecture" in one})
+    libraries = threadpool_info()
+    return sorted({x["architecture"] for x in libraries if x["user_api"] == "blas" and "architecture" in x})

@@ -96,7 +96,7 @@ def _compute(block: Block) -> dict[str, np.ndarray]:
     }
     anew = starts_at(starts.reshape(-1, states)[: steps.shape[1]])  # also after a point that failed
     first = anew if block.begun is None else block.begun
-    first, anew = (with_velocities(one, kind.masses, 1 / rate) for one in (first, anew))
+    first, anew = (with_velocities(places, kind.masses, 1 / rate) for places in (first, anew))
     workspace = _workspace(block, kind, int(table["cells"].max()), min(steps.shape[1], LANES))
     mapping = Mapping(plan.order) if plan.order else None
     begins = np.stack([first, anew])

@@ -92,8 +92,8 @@ def at_contact(table: np.ndarray, ends: np.ndarray, resting: np.ndarray) -> np.n
     low, high = table["stops"][..., 0], table["stops"][..., 1]
     if "contact_stiffness" in table.dtype.names:
         low, high = (
-            np.where(table["contact_stiffness"][..., n] > 0, np.inf * (2 * n - 1), one)
-            for n, one in enumerate((low, high))
+            np.where(table["contact_stiffness"][..., n] > 0, np.inf * (2 * n - 1), wall)
+            for n, wall in enumerate((low, high))
         )
         resting = np.where(np.isinf(np.where(resting > 0, high, low)), 0, resting)
     ends[..., 0] = np.where(resting > 0, high, np.where(resting < 0, low, np.clip(ends[..., 0], low, high)))

@@ -149,17 +149,17 @@ def kept(
 
     def evaluate(names: list[str], jobs: list) -> list:
         nonlocal done
-        found = {name: file.get(name) for name in names}
-        missing = iter([(name, job) for name, job in zip(names, jobs, strict=True) if found[name] is None])
+        result_of = {name: file.get(name) for name in names}
+        missing = iter([(name, job) for name, job in zip(names, jobs, strict=True) if result_of[name] is None])
         total = done + len(jobs)
-        done += sum(one is not None for one in found.values())
+        done += sum(result is not None for result in result_of.values())
         for name, result in _results(function, pool, missing):
             file.write(name, result)
-            found[name] = result
+            result_of[name] = result
             done += 1
             if progress:
                 progress(done, total)
-        return list(found.values())
+        return list(result_of.values())
 
     return evaluate
 

@@ -25,22 +25,22 @@ def followed_branches(
     names, masses = list(scene.parameter), scene.system.masses
     evaluate = kept(compute_branch, pool, file, progress)
     search = Branches(tuple(names), tuple(scene.parameter.values()), scene.follow)
-    found = search.run(seeds_of(scene, file, pool), scene.depth, evaluate)
-    arrays = joined([node.arrays for node in found], SHAPES, names, masses)
-    sections = [node.arrays["section"].reshape(-1, 2 * masses) for node in found]
+    nodes = search.run(seeds_of(scene, file, pool), scene.depth, evaluate)
+    arrays = joined([node.arrays for node in nodes], SHAPES, names, masses)
+    sections = [node.arrays["section"].reshape(-1, 2 * masses) for node in nodes]
     together = np.concatenate(sections) if sections else np.zeros((0, 2 * masses))
     arrays |= {f"section_{name}": together[:, i] for i, name in enumerate(state(masses))}
-    arrays["branch_sections"] = np.array([node.arrays["section"].shape[1] for node in found], int)
-    return columns_in_file(BRANCHES, names, scene.system), arrays | where_met(found, arrays["branch_special"])
+    arrays["branch_sections"] = np.array([node.arrays["section"].shape[1] for node in nodes], int)
+    return columns_in_file(BRANCHES, names, scene.system), arrays | where_met(nodes, arrays["branch_special"])
 
 
-def where_met(found: list[Node], counts: np.ndarray) -> dict[str, np.ndarray]:
+def where_met(nodes: list[Node], counts: np.ndarray) -> dict[str, np.ndarray]:
     """The columns that say from which special point each branch or curve was reached; counts : of those of each."""
-    parents = np.array([node.seed.parent for node in found], int)
-    own = np.array([node.seed.special for node in found], int)
+    parents = np.array([node.seed.parent for node in nodes], int)
+    special_points = np.array([node.seed.special for node in nodes], int)
     first = np.append(0, np.cumsum(counts))
     return {
         "branch_parent": parents,
-        "branch_parent_special": np.where(parents >= 0, first[parents] + own, -1),
-        "branch_generation": np.array([node.generation for node in found], int),
+        "branch_parent_special": np.where(parents >= 0, first[parents] + special_points, -1),
+        "branch_generation": np.array([node.generation for node in nodes], int),
     }

@@ -41,12 +41,12 @@ def followed_curves(
     evaluate = kept(compute_curve, pool, file, progress)
     if of_plane is not None:
         evaluate_probes = kept(probe, pool, file, progress)
-        found = explain(*of_plane, names, bounds, scene.of, scene.depth, evaluate_probes, evaluate)
-        curves, more = found.curves, edges_in_file(of_plane[0], found)
+        explanation = explain(*of_plane, names, bounds, scene.of, scene.depth, evaluate_probes, evaluate)
+        curves, more = explanation.curves, edges_in_file(of_plane[0], explanation)
     else:
         starts = _starts(scene, names, bounds, pool, file, progress)
         curves = Curves(names, bounds, scene.of).run(starts, scene.depth, evaluate)
-    arrays = joined([one.arrays for one in curves], SHAPES, list(names), scene.system.masses)
+    arrays = joined([curve.arrays for curve in curves], SHAPES, list(names), scene.system.masses)
     columns = columns_in_file(CHART, list(names), scene.system, OF_EDGES if more else ())
     return columns, arrays | where_met(curves, arrays["branch_special"]) | more
 
@@ -55,9 +55,9 @@ def _starts(scene: Continuation, names, bounds, pool, file, progress) -> list[Se
     """The seeds of curves within the bounds."""
     on_branches = scene.origin in BY_BRANCHES
     specials = _on_branches(scene, pool, file, progress) if on_branches else specials_of(scene, file, pool)
-    found = [seed_at(special, names) for special in specials if special.type in scene.of]
+    seeds = [seed_at(special, names) for special in specials if special.type in scene.of]
     lo, hi = np.transpose(bounds)
-    return [one for one in found if one is not None and np.all((lo <= (at := one.place(names))) & (at <= hi))]
+    return [seed for seed in seeds if seed is not None and np.all((lo <= (at := seed.place(names))) & (at <= hi))]
 
 
 def _on_branches(scene: Continuation, pool, file, progress) -> list[SpecialPoint]:

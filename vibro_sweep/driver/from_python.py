@@ -15,7 +15,7 @@ from vibro_sweep.driver.any_file import open
 from vibro_sweep.driver.provenance import provenance
 from vibro_sweep.driver.sweep import check_how, fill, run_sweep
 from vibro_sweep.files.subject import about_run
-from vibro_sweep.oscillator.built import Built
+from vibro_sweep.oscillator.function_model import FunctionModel
 from vibro_sweep.oscillator.oscillator import Oscillator, checked_system
 from vibro_sweep.results import layout
 from vibro_sweep.results.in_memory import InMemory
@@ -101,23 +101,23 @@ def sweep(
             raise ArgumentTypeError(
                 not_allowed("system", system, f"a System, an Oscillator, or a function of {', '.join(first)}")
             )
-        system = Built(system, first)
+        system = FunctionModel(system, first)
     checked_system(system)
     if start is not None and not isinstance(start, (str, Mapping, Start)):
         checked_state(start, system.masses, "start")
-    given = {"sweep": axes, "start": start, "transient": transient, "settle": settle, "record": record}
-    given |= {"section": section, "observe": observe, "trajectory": trajectory}
-    scene = scene_of({"system": system} | changed({}, given), "sweep")
-    if isinstance(system, Built):
+    arguments = {"sweep": axes, "start": start, "transient": transient, "settle": settle, "record": record}
+    arguments |= {"section": section, "observe": observe, "trajectory": trajectory}
+    scene = scene_of({"system": system} | changed({}, arguments), "sweep")
+    if isinstance(system, FunctionModel):
         for corner in itertools.product(
             *(values[[0, -1]].tolist() for name, values in scene.sweep.items() if name in first)
         ):
             system.compare_units(first | dict(zip(first, corner, strict=True)))
     quantities = layout.quantities(scene)
-    taken = {*quantities, *(own for one in quantities.values() for own in one.dimensions)}
-    taken |= {"start"} if scene.n_starts > 1 else set()
-    for name in taken.intersection(scene.sweep):
-        raise ArgumentError(not_allowed("axes", name, f"of other names than {', '.join(sorted(taken))}"))
+    reserved = {*quantities, *(dimension for quantity in quantities.values() for dimension in quantity.dimensions)}
+    reserved |= {"start"} if scene.n_starts > 1 else set()
+    for name in reserved.intersection(scene.sweep):
+        raise ArgumentError(not_allowed("axes", name, f"of other names than {', '.join(sorted(reserved))}"))
     if output is None and mode != "new":
         raise ArgumentError(not_allowed("mode", mode, "'new' without a file, `output`"))
     if output is not None:

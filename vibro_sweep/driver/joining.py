@@ -25,12 +25,12 @@ def columns_in_file(
     """All variables of a file, and more, in the units of a system."""
     of_each = {name: system.described[name].units for name in parameters}
     first, *others = of_each.values()
-    common = {OF_FIRST: first, OF_PARAMETER: first if all(one == first for one in others) else "1"}
+    common = {OF_FIRST: first, OF_PARAMETER: first if all(other == first for other in others) else "1"}
 
     def unit(column: Quantity) -> str:
         return unit_in(of_each.get(column.name) or common.get(column.units, column.units), system.units)
 
-    return [replace(one, units=unit(one)) for one in (*columns(kind, parameters, system.masses), *more)]
+    return [replace(column, units=unit(column)) for column in (*columns(kind, parameters, system.masses), *more)]
 
 
 def joined(
@@ -45,7 +45,7 @@ def joined(
     points, specials = result["branch_row_size"], result["branch_special"]
     lengths = {"2": 2, "2N": 2 * masses}
     for dimensions, names in shapes.items():
-        tail = [lengths[one] for one in dimensions.split() if one in lengths]
+        tail = [lengths[key] for key in dimensions.split() if key in lengths]
         for name in names.split():
             parts = [np.reshape(arrays[name], (-1, *tail)) for arrays in all_arrays]
             if dimensions == "K":
@@ -78,7 +78,7 @@ def part_of(arrays: Mapping[str, np.ndarray], shapes: Mapping[str, str], paramet
     n, K, s = counts[:, index]
     begin, _, before = counts[:, :index].sum(axis=1)
     first = (counts[0] * counts[1])[:index].sum()
-    own = {
+    indices = {
         "": index,
         "n": slice(begin, begin + n),
         "K": slice(first, first + K),
@@ -88,9 +88,9 @@ def part_of(arrays: Mapping[str, np.ndarray], shapes: Mapping[str, str], paramet
     columns = {"value": parameters, "state": state(arrays["multiplier_re"].shape[1] // 2)}
     result = {}
     for dimensions, names in shapes.items():
-        there = own[dimensions if dimensions in own else dimensions[0]]
+        there = indices[dimensions if dimensions in indices else dimensions[0]]
         for name in names.split():
-            parts = [np.asarray(arrays[one])[there] for one in columns.get(name, [name])]
+            parts = [np.asarray(arrays[key])[there] for key in columns.get(name, [name])]
             result[name] = np.stack(parts, axis=-1) if len(parts) > 1 else parts[0]
             if dimensions == "n K":
                 result[name] = result[name].reshape(n, K)

@@ -71,8 +71,8 @@ def _object_in(data: Sweep) -> Saved | list[Branch] | list[BifurcationCurve]:
     names = np.atleast_1d(data.attrs["parameters"]).tolist()
     if kind == WINDOWS:
         return _windows(data, arrays, names)
-    found = _each(data, arrays, names)
-    return found[0] if ONE in data.attrs and found else found
+    loaded = _each(data, arrays, names)
+    return loaded[0] if ONE in data.attrs and loaded else loaded
 
 
 def _each(data: Sweep, arrays: Arrays, names: list[str]) -> list[Followed]:
@@ -83,12 +83,12 @@ def _each(data: Sweep, arrays: Arrays, names: list[str]) -> list[Followed]:
     of_curves = data.attrs["kind"] == CHART
     result: list[Followed] = []
     for i in range(len(arrays["branch_period"])):
-        own = part_of(arrays, (curve_arrays if of_curves else branch_arrays).SHAPES, names, i)
-        there = system.replace(**dict(zip(names, np.reshape(own["value"], (-1, len(names)))[0].tolist(), strict=True)))
+        part = part_of(arrays, (curve_arrays if of_curves else branch_arrays).SHAPES, names, i)
+        there = system.replace(**dict(zip(names, np.reshape(part["value"], (-1, len(names)))[0].tolist(), strict=True)))
         if of_curves:
-            result.append(curve_arrays.curve_of(own, (names[0], names[1]), there))
+            result.append(curve_arrays.curve_of(part, (names[0], names[1]), there))
         else:
-            result.append(branch_arrays.branch_of(own, names[0], there))
+            result.append(branch_arrays.branch_of(part, names[0], there))
     return result
 
 
@@ -101,12 +101,12 @@ def _windows(data: Sweep, arrays: Arrays, names: list[str]) -> Windows:
     result.parameter = parameter
     first = np.append(0, np.cumsum(arrays["branch_row_size"]))
     for w, branch in enumerate(arrays["window_branch"].tolist()):
-        own = part_of(arrays, branch_arrays.SHAPES, names[:1], branch)
+        part = part_of(arrays, branch_arrays.SHAPES, names[:1], branch)
         held = {name: float(arrays[name][first[branch]]) for name in names[1:]}
-        there = system.replace(**held | {parameter: float(own["value"][own["branch_origin"]])})
+        there = system.replace(**held | {parameter: float(part["value"][part["branch_origin"]])})
         ends = (float(arrays[name][w]) for name in ("window_lo", "window_hi"))
         counts = (int(arrays[name][w]) for name in ("window_orbits", "window_other_attractor"))
-        window = Window(parameter, *ends, held, *counts, own, there)
+        window = Window(parameter, *ends, held, *counts, part, there)
         _ = window.lower, window.upper, window.orbit  # a damaged one is refused here
         result.append(window)
     shape = data.attrs["sweep_shape"]
@@ -114,8 +114,8 @@ def _windows(data: Sweep, arrays: Arrays, names: list[str]) -> Windows:
     result.unvisited = [_unvisited(arrays, u, result) for u in range(len(arrays["unvisited_window"]))]
     attributes = {name: data.attrs[name] for name in ("sweep", "parameter", "sweep_shape", *chosen)}
     title = str(data.attrs["title"]).removeprefix("vibro_sweep: ")
-    about = ragged_dataset.about(WINDOWS, title, data.attrs["scene"], attributes | {"parameters": names})
-    result._dataset = partial(ragged_dataset.dataset, about, columns_in_file(WINDOWS, names, system), arrays)
+    header = ragged_dataset.attributes_of(WINDOWS, title, data.attrs["scene"], attributes | {"parameters": names})
+    result._dataset = partial(ragged_dataset.dataset, header, columns_in_file(WINDOWS, names, system), arrays)
     return result
 
 

@@ -54,17 +54,17 @@ def source_of(scene: Continuation) -> Source:
         with sweep_in(Path(scene.begin), computes=True) as data:
             if data.attrs.get("kind", SWEEP) != SWEEP:
                 raise SourceError(f"continue.from.sweep: {scene.begin} holds {cut(str(data.attrs['kind']))}, no sweep")
-            own = _rows(scene, data)[0].system
+            its_system = _rows(scene, data)[0].system
             run_id = run_id_of(data)
     elif scene.origin == "branches":
         with sweep_in(Path(scene.begin), computes=True) as data:
-            own, names = _at_special(scene, data)
+            its_system, names = _at_special(scene, data)
             run_id = run_id_of(data)
-        free |= {name: own.numbers[name] for name in names}
+        free |= {name: its_system.numbers[name] for name in names}
     else:
         return Source(scene.system, "")
-    _check_same(scene, own.replace(**free), scene.system.replace(**free))
-    return Source(own, run_id)
+    _check_same(scene, its_system.replace(**free), scene.system.replace(**free))
+    return Source(its_system, run_id)
 
 
 def attributes_of(scene: Continuation, source: Source) -> dict[str, Any]:
@@ -72,9 +72,9 @@ def attributes_of(scene: Continuation, source: Source) -> dict[str, Any]:
 
     A phase `grazing` that changes with what is followed is not one of them.
     """
-    found = {name: value for name, value in source.system.parameters().items() if name not in scene.parameter}
+    others = {name: value for name, value in source.system.parameters().items() if name not in scene.parameter}
     ends = [source.system.replace(**{name: end}) for name, limits in scene.parameter.items() for end in limits]
-    held = {k: v for k, v in found.items() if k != "tau" or all(end.parameters()["tau"] == v for end in ends)}
+    held = {k: v for k, v in others.items() if k != "tau" or all(end.parameters()["tau"] == v for end in ends)}
     return {"parameters": list(scene.parameter)} | held | ({"source": source.run_id} if source.run_id else {})
 
 
@@ -106,14 +106,14 @@ def _orbits(scene: Continuation, key: str) -> list[PeriodicOrbit]:
     return _from_branches(scene, key)
 
 
-def _check_same(scene: Continuation, own: Oscillator, asked: Oscillator) -> None:
+def _check_same(scene: Continuation, its_system: Oscillator, asked: Oscillator) -> None:
     """Raise ValueError where a file's oscillator is not that of the scene."""
-    if own == asked:
+    if its_system == asked:
         return
-    ours, theirs = ({"type": one.model.name, **one.numbers, **one.options} for one in (asked, own))
-    for name in [*ours, *theirs]:
-        if ours.get(name) != theirs.get(name):
-            named = f"{name} = {shown(ours.get(name))} in system, and {shown(theirs.get(name))} in {scene.begin}"
+    here, there = ({"type": system.model.name, **system.numbers, **system.options} for system in (asked, its_system))
+    for name in [*here, *there]:
+        if here.get(name) != there.get(name):
+            named = f"{name} = {shown(here.get(name))} in system, and {shown(there.get(name))} in {scene.begin}"
             raise SourceError(f"continue.from.{scene.origin}: {named}; branches belong to one oscillator")
 
 
@@ -124,11 +124,11 @@ def _rows(scene: Continuation, data: Sweep) -> list[Row]:
     """
     rows = rows_in(data, next(iter(scene.parameter)))
     numbers = {name: value for name, value in scene.system.parameters().items() if name not in scene.parameter}
-    found = [row for row in rows if all(numbers.get(name, value) == value for name, value in row.held.items())]
-    if not found:
+    matching = [row for row in rows if all(numbers.get(name, value) == value for name, value in row.held.items())]
+    if not matching:
         held = ", ".join(f"{name} = {numbers[name]!r}" for name in rows[0].held)
         raise SourceError(f"continue.from.sweep: {scene.begin} has no row with {held}")
-    return found
+    return matching
 
 
 def _from_sweep(scene: Continuation, key: str, file: Pieces, pool: Executor | None) -> list[PeriodicOrbit]:
@@ -136,23 +136,23 @@ def _from_sweep(scene: Continuation, key: str, file: Pieces, pool: Executor | No
     with sweep_in(Path(scene.begin), computes=True) as data:
         rows = _rows(scene, data)
     orbits = []
-    for found in _chosen(scene, search_of(rows, file, pool)):
-        lo, hi = np.clip(found.ends, *scene.parameter[key])
-        value = float(np.clip(found.arrays["value"][found.arrays["branch_origin"]], lo, hi))
-        system = found.system.replace(**{key: value})
-        orbit = orbit_of(system, solution_in(found.arrays, value, system))
-        if found.ends[0] <= value <= found.ends[1] and orbit.ok:
+    for window in _chosen(scene, search_of(rows, file, pool)):
+        lo, hi = np.clip(window.ends, *scene.parameter[key])
+        value = float(np.clip(window.arrays["value"][window.arrays["branch_origin"]], lo, hi))
+        system = window.system.replace(**{key: value})
+        orbit = orbit_of(system, solution_in(window.arrays, value, system))
+        if window.ends[0] <= value <= window.ends[1] and orbit.ok:
             orbits.append(orbit)
     return orbits
 
 
 def _chosen(scene: Continuation, search: WindowSearch) -> list[RowWindow]:
     """The windows from which a scene begins, in the order of the sweep: all, or the largest within its range."""
-    found, (lo, hi) = search.found, next(iter(scene.parameter.values()))
+    windows_found, (lo, hi) = search.found, next(iter(scene.parameter.values()))
     if scene.largest is None:
-        return found
-    widths = np.array([np.ptp(np.clip(one.ends, lo, hi)) for one in found])
-    return [found[w] for w in np.sort(np.argsort(-widths, kind="stable")[: scene.largest])]
+        return windows_found
+    widths = np.array([np.ptp(np.clip(window.ends, lo, hi)) for window in windows_found])
+    return [windows_found[w] for w in np.sort(np.argsort(-widths, kind="stable")[: scene.largest])]
 
 
 def _one(orbit: PeriodicOrbit, scene: Continuation) -> PeriodicOrbit:
@@ -169,8 +169,8 @@ def _from_branches(scene: Continuation, key: str) -> list[PeriodicOrbit]:
     if special.type not in WAYS and key == parameter:
         named = f"{scene.special} is a {special.type!r} in {scene.begin}, at which no other branch begins"
         raise SourceError(f"continue.from.special: {named}; one begins at {', '.join(WAYS)}")
-    found = switch(special) if special.type in WAYS else []
-    return found if key == parameter else [special.orbit, *found]
+    orbits = switch(special) if special.type in WAYS else []
+    return orbits if key == parameter else [special.orbit, *orbits]
 
 
 def specials_of(scene: Continuation, file: Pieces, pool: Executor | None) -> list[SpecialPoint]:

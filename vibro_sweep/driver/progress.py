@@ -44,12 +44,12 @@ def progress_bar(quiet: bool) -> Iterator[Tell | None]:
 
 def lines() -> Tell:
     """What logs (done, total) once a minute."""
-    said = time.monotonic()
+    last = time.monotonic()
 
     def show(done: int, total: int) -> None:
-        nonlocal said
-        if time.monotonic() - said >= BETWEEN_LINES and done < total:
-            said = time.monotonic()
+        nonlocal last
+        if time.monotonic() - last >= BETWEEN_LINES and done < total:
+            last = time.monotonic()
             _log.info("%s of %s", f"{done:,}", f"{total:,}")
 
     return show

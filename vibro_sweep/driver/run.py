@@ -84,7 +84,7 @@ def _report(path: Path, computed: bool) -> RunReport:
     """The report on a file of branches or curves; `failed` counts those that could not be followed to both ends."""
     with open_file(path) as data:
         types = CODIMENSION_TWO if data.attrs["kind"] == CHART else TYPES
-        names = np.array([one.name for one in types])[data["special_type"].values]
+        names = np.array([row.name for row in types])[data["special_type"].values]
         branches, failed = data["branch_period"].size, np.unique(data["special_branch"].values[names == "failed"])
         seconds = json.loads(data.attrs["provenance"])["wall_time_s"]
     counts = {"ok": branches - len(failed), "failed": len(failed)}

@@ -37,18 +37,18 @@ def run_continuation(
     with computed_from_source(scene):
         of_plane = plane_of(scene) if of_curves else None
         attributes = attributes_of(scene, source_of(scene))
-        about = ragged_dataset.about(CHART if of_curves else BRANCHES, scene.name, scene.text, attributes)
-        with pieces_run(about, output, mode, provenance(), scene.inputs) as file:
+        header = ragged_dataset.attributes_of(CHART if of_curves else BRANCHES, scene.name, scene.text, attributes)
+        with pieces_run(header, output, mode, provenance(), scene.inputs) as file:
             if isinstance(file, Complete):
                 return False
             with workers_of(workers, executor) as pool:
                 try:
                     if of_curves:
-                        found = followed_curves(scene, of_plane, pool, file, progress)
+                        contents = followed_curves(scene, of_plane, pool, file, progress)
                     else:
-                        found = followed_branches(scene, pool, file, progress)
+                        contents = followed_branches(scene, pool, file, progress)
                 except NoOrbitError:
                     file.drop()
                     raise
-            file.finish(ragged_dataset.dataset(about, *found))
+            file.finish(ragged_dataset.dataset(header, *contents))
             return True

@@ -69,13 +69,14 @@ def _dataset(result: Saved) -> "xarray.Dataset":
         arrays = branch_arrays.arrays_of(result, result._start.family.numbers[result.parameter])
         kind, shapes = BRANCHES, branch_arrays.SHAPES
         sections = branch_arrays.sections_of(arrays, result.parameter, system)
-        more = {f"section_{one}": sections[..., i].ravel() for i, one in enumerate(state(system.masses))}
+        more = {f"section_{coordinate}": sections[..., i].ravel() for i, coordinate in enumerate(state(system.masses))}
         more["branch_sections"] = np.array([sections.shape[1]])
     scene = _scene_of(arrays, names, system)
     attributes = attributes_of(scene, Source(scene.system, "")) | {ONE: type(result).__name__}
-    about = ragged_dataset.about(kind, f"{type(result).__name__} in {', '.join(names)}", scene.to_yaml(), attributes)
-    found = joined([arrays], shapes, names, system.masses) | none | more
-    return ragged_dataset.dataset(about, columns_in_file(kind, names, system), found)
+    title = f"{type(result).__name__} in {', '.join(names)}"
+    header = ragged_dataset.attributes_of(kind, title, scene.to_yaml(), attributes)
+    columns_of_result = joined([arrays], shapes, names, system.masses) | none | more
+    return ragged_dataset.dataset(header, columns_in_file(kind, names, system), columns_of_result)
 
 
 def _scene_of(arrays: dict[str, np.ndarray], names: Sequence[str], system: Oscillator) -> Continuation:
@@ -83,7 +84,7 @@ def _scene_of(arrays: dict[str, np.ndarray], names: Sequence[str], system: Oscil
     value = np.reshape(arrays["value"], (-1, len(names)))
     at = int(arrays.get("branch_origin", len(value) // 2))
     there = system.replace(**dict(zip(names, value[at].tolist(), strict=True)))
-    bounds = {name: _range(there, name, one) for name, one in zip(names, value.T, strict=True)}
+    bounds = {name: _range(there, name, entries) for name, entries in zip(names, value.T, strict=True)}
     begin = tuple(arrays["state"][at].tolist())
     period = int(arrays["branch_period"])
     return Continuation("result", there, "state", begin, period, None, None, bounds, CURVES, (), 0)

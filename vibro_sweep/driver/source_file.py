@@ -13,7 +13,7 @@ from vibro_sweep.checks.errors import VibroSweepError
 from vibro_sweep.checks.file_names import FileError
 from vibro_sweep.files.file_errors import StoreError
 from vibro_sweep.files.reading import sweep_in, warn_where_incomplete
-from vibro_sweep.oscillator.built import BUILD
+from vibro_sweep.oscillator.function_model import BUILD
 from vibro_sweep.results.sweep_dataset import Sweep
 from vibro_sweep.scene import Continuation, parse_scene
 from vibro_sweep.tables.file_columns import SWEEP
@@ -55,9 +55,9 @@ def swept(data: "str | Path | xarray.Dataset") -> Iterator[Sweep]:
         if not {"scene", "sweep_dimensions"} <= data.attrs.keys():
             raise SourceError("data: this dataset is not one of `vibro_sweep.open` or `vibro_sweep.sweep`")
     name = data if isinstance(data, (str, Path)) else "data"
-    with computed_from(name), sweep_in(data, computes=True) as found:
-        warn_where_incomplete(found.data)
-        yield found
+    with computed_from(name), sweep_in(data, computes=True) as sweep:
+        warn_where_incomplete(sweep.data)
+        yield sweep
 
 
 def computed_from_source(scene: Continuation) -> AbstractContextManager[None]:
@@ -77,5 +77,5 @@ def run_id_of(data: Sweep) -> str:
     values = {name: np.atleast_1d(data.data[name].values) for name in whole if name in data.data.coords}
     if all(name in values and len(values[name]) == len(axis) for name, axis in whole.items()):
         return known
-    named = repr([known, *((name, one.tolist()) for name, one in values.items())])
+    named = repr([known, *((name, swept_values.tolist()) for name, swept_values in values.items())])
     return hashlib.sha256(named.encode()).hexdigest()[:32]

@@ -48,7 +48,7 @@ def plane_of(scene: Continuation) -> tuple[Plane, np.ndarray, Any] | None:
     return Plane(tuple(np.sort(axis) for axis in values), period), states, system
 
 
-def edges_in_file(plane: Plane, found: Explained) -> dict[str, np.ndarray]:
+def edges_in_file(plane: Plane, explanation: Explained) -> dict[str, np.ndarray]:
     """The columns of `OF_EDGES`."""
-    one, other = np.moveaxis(ends_of(plane, found.edges), 1, 0)
-    return {"edge_from": one, "edge_to": other, "edge_reason": found.reason, "edge_curve": found.curve}
+    first, second = np.moveaxis(ends_of(plane, explanation.edges), 1, 0)
+    return {"edge_from": first, "edge_to": second, "edge_reason": explanation.reason, "edge_curve": explanation.curve}

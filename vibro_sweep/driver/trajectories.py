@@ -57,5 +57,5 @@ def _of_the_masses(block: Block, points: np.ndarray, kept) -> tuple[np.ndarray, 
     stops = points["stops"][:, None, None]
     stop = np.where(side > 0, stops[..., 1], stops[..., 0])
     before = np.concatenate([stop[..., None], kept.impacts[..., 2:3], kept.impacts[..., 4:]], axis=-1)
-    own = turned(before)[..., 2 if block.system.gap_is_x1 else 0 :]
-    return turned(kept.samples), turned(kept.sections), np.concatenate([kept.impacts[..., :4], own], axis=-1)
+    velocities = turned(before)[..., 2 if block.system.gap_is_x1 else 0 :]
+    return turned(kept.samples), turned(kept.sections), np.concatenate([kept.impacts[..., :4], velocities], axis=-1)

@@ -86,13 +86,13 @@ def windows(
     with given_or_bar(progress) as tell:
         if output is not None:
             search = run_windows(data, output, parameter, workers, None, tell, mode)
-        with swept(data) as found:
-            rows = rows_in(found, parameter)
+        with swept(data) as sweep:
+            rows = rows_in(sweep, parameter)
             if search is None:
                 with workers_of(workers, None) as pool:
                     search = search_of(rows, NothingKept(), pool, tell)
             result = windows_of(search)
-            result._dataset = partial(_dataset, _about(found, rows[0].parameter), search)
+            result._dataset = partial(_dataset, _about(sweep, rows[0].parameter), search)
             return result
 
 
@@ -109,17 +109,17 @@ def run_windows(
     already."""
     output = file_to_write("output", output)
     inputs = [checked_path("data", data)] if isinstance(data, (str, Path)) else []
-    with swept(data) as found:
-        rows = rows_in(found, parameter)
-        about = _about(found, rows[0].parameter)
-        with pieces_run(about, output, mode, provenance(), inputs) as file:
+    with swept(data) as sweep:
+        rows = rows_in(sweep, parameter)
+        header = _about(sweep, rows[0].parameter)
+        with pieces_run(header, output, mode, provenance(), inputs) as file:
             if isinstance(file, Complete):
                 return None
             with workers_of(workers, executor) as pool:
                 search = search_of(rows, file, pool, progress)
             if progress:
                 progress(search.total, search.total)
-            file.finish(_dataset(about, search))
+            file.finish(_dataset(header, search))
             return search
 
 
@@ -190,24 +190,24 @@ def _about(data: Sweep, parameter: str) -> dict[str, Any]:
     attributes = {"sweep": run_id_of(data), "parameter": parameter, "parameters": names}
     attributes["sweep_shape"] = np.array([*(data.sizes[name] for name in data.keys), data.sizes.get("start", 1)])
     attributes |= data.held  # of a part of a Dataset: the values of numbers that were swept
-    return ragged_dataset.about(WINDOWS, f"windows of {title}", data.attrs["scene"], attributes)
+    return ragged_dataset.attributes_of(WINDOWS, f"windows of {title}", data.attrs["scene"], attributes)
 
 
-def _dataset(about: dict[str, Any], search: WindowSearch) -> "xarray.Dataset":
-    return ragged_dataset.dataset(about, *_contents(search))
+def _dataset(header: dict[str, Any], search: WindowSearch) -> "xarray.Dataset":
+    return ragged_dataset.dataset(header, *_contents(search))
 
 
 def _contents(search: WindowSearch) -> tuple:
     """Columns and arrays of the file."""
-    first, found = search.rows[0], search.found
+    first, windows_found = search.rows[0], search.found
     names = [first.parameter, *first.held]
     masses = first.system.masses
-    all_arrays = [one.arrays for one in found]
-    held = [tuple(search.rows[one.row].held.values()) for one in found]
+    all_arrays = [window.arrays for window in windows_found]
+    held = [tuple(search.rows[window.row].held.values()) for window in windows_found]
     arrays = joined(all_arrays, SHAPES, names, masses, held)
-    none = np.full(len(found), -1, np.int32)
+    none = np.full(len(windows_found), -1, np.int32)
     arrays |= {"branch_parent": none, "branch_parent_special": none, "branch_generation": 0 * none}
-    ends = np.array([one.ends for one in found]).reshape(len(found), 2)
+    ends = np.array([window.ends for window in windows_found]).reshape(len(windows_found), 2)
     window, reason = in_file_order(search)
     arrays |= {
         "window_lo": ends[:, 0],
@@ -216,8 +216,8 @@ def _contents(search: WindowSearch) -> tuple:
         "window_upper": arrays["branch_ends"],
         "window_period": arrays["branch_period"],
         "window_symmetric": arrays["branch_symmetric"],
-        "window_branch": np.arange(len(found)),
-        "window_row": np.array([one.row for one in found], int),
+        "window_branch": np.arange(len(windows_found)),
+        "window_row": np.array([window.row for window in windows_found], int),
         "window_orbits": search.counts,
         "window_other_attractor": search.other_attractor,
         "orbit_window": window.ravel(),
@@ -229,7 +229,7 @@ def _contents(search: WindowSearch) -> tuple:
 
 def _unvisited(search: WindowSearch, masses: int) -> dict[str, np.ndarray]:
     """The columns over `unvisited`."""
-    found, names = unvisited_in(search), state(masses)
-    states = np.array([one.state for one in found]).reshape(len(found), len(names))
-    numbers = {f"unvisited_{key}": np.array([getattr(one, key) for one in found]) for key in UNVISITED}
+    starts, names = unvisited_in(search), state(masses)
+    states = np.array([start.state for start in starts]).reshape(len(starts), len(names))
+    numbers = {f"unvisited_{key}": np.array([getattr(start, key) for start in starts]) for key in UNVISITED}
     return numbers | {f"unvisited_{name}": states[:, i] for i, name in enumerate(names)}

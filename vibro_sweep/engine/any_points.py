@@ -24,7 +24,7 @@ from vibro_sweep.engine.coordinates.frame import frame_of
 from vibro_sweep.engine.records import Kind, point_of
 from vibro_sweep.engine.tables import cells
 from vibro_sweep.engine.tables.flight import WIDTH
-from vibro_sweep.oscillator.linear import MOTION, Linear, taken
+from vibro_sweep.oscillator.linear import MOTION, Linear, selected
 from vibro_sweep.oscillator.sensitivity import grazing_state
 from vibro_sweep.oscillator.stacks import dot
 from vibro_sweep.oscillator.steady import gap_responses, steady_amplitudes
@@ -47,7 +47,7 @@ def any_points(q: Linear, kind: Kind, frames: bool = True) -> np.ndarray:
     shape, origin = q.omega.shape, origin_of(q)
     q, origin = _flat(q), origin.reshape(-1, origin.shape[-1])
     different, place = _different(np.concatenate([_row(getattr(q, name)) for name in MOTION] + [origin], -1))
-    known = _points(taken(q, different), kind, frames)
+    known = _points(selected(q, different), kind, frames)
     result = known[place]
     low, high = (distance(q, origin, gap) for gap in (q.low, q.high))
     result["stops"] = np.stack([low, high, q.R_low, q.R_high], -1)
@@ -97,7 +97,7 @@ def grazing_points(q: Linear, expand_at: float | None) -> np.ndarray:
     for place in np.ndindex(response.shape):  # () where it is one oscillator
         if np.isnan(response[place]) or response[place] == 0:
             continue
-        one = taken(q, place)
+        one = selected(q, place)
         state = np.kron(coordinates(one.normal, least_restrained(one))[0], np.eye(2)) @ grazing_state(one)
         state[0] = state[0] if expand_at is None else expand_at
         result[place] = state
@@ -122,13 +122,13 @@ def _points(q: Linear, kind: Kind, frames: bool) -> np.ndarray:
     for name, values in confinement_of(q, contact)._asdict().items():
         points["confining" if name == "form" else name] = values
     for i in np.flatnonzero(points["apart"]):
-        _set_apart(points[i], taken(q, i), ContactCoordinates(*(one[i] for one in contact)))
+        _set_apart(points[i], selected(q, i), ContactCoordinates(*(one[i] for one in contact)))
     for i in np.flatnonzero(points["cells"] == cells.STIFF_CELLS):
         _set_exponentials(points[i], ContactCoordinates(*(one[i] for one in contact)))
     there = np.flatnonzero(points["cells"] > 0)
     if frames and len(there):
         some = ContactCoordinates(*(one[there] for one in contact))
-        frame = frame_of(natural_coordinates(taken(q, there), some), q.omega[there])
+        frame = frame_of(natural_coordinates(selected(q, there), some), q.omega[there])
         points["rounding"][there] = frame.rounding
         points["frame_eta"][there], points["frame_square"][there] = frame.eta, frame.square
         points["frame_scale"][there] = frame.scale

@@ -24,10 +24,10 @@ def obstacle(path: Path) -> str | None:
     return None if stat.S_ISREG(mode) else "is a device, a pipe or a socket; it must be a file"
 
 
-def same_file(one: Path, other: Path) -> bool:
+def same_file(first: Path, second: Path) -> bool:
     """Whether two names lead to one file, also through links; not where nothing stands at one of them."""
     try:
-        return one.samefile(other)
+        return first.samefile(second)
     except OSError:
         return False
 

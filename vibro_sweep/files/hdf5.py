@@ -49,22 +49,22 @@ def create(
             group = h5.create_group(CHECKS)
             for name, value in checks.attrs.items():
                 set_attribute(group, str(name), value)
-            made |= {f"{CHECKS}/{name}": _empty(group, str(name), one.values) for name, one in checks.items()}
+            made |= {f"{CHECKS}/{name}": _empty(group, str(name), variable.values) for name, variable in checks.items()}
         for name in others:  # after all numbers, which the heap that this makes would part
             for i, dimension in enumerate(data[name].dims):
                 made[name].dims[i].attach_scale(h5[dimension])
-            along = [one for one in beside if name not in beside and {*data[one].dims} <= {*data[name].dims}]
+            along = [key for key in beside if name not in beside and {*data[key].dims} <= {*data[name].dims}]
             if along:
                 set_attribute(made[name], "coordinates", " ".join(along))
-        filled = [one.id for name, one in made.items() if name in later or name.startswith(f"{CHECKS}/")]
-        return {Stretch(one.get_offset(), one.get_storage_size()): fill_of(one) for one in filled}
+        filled = [handle.id for name, handle in made.items() if name in later or name.startswith(f"{CHECKS}/")]
+        return {Stretch(handle.get_offset(), handle.get_storage_size()): fill_of(handle) for handle in filled}
 
 
 def set_attribute(of: h5py.Group | h5py.Dataset, name: str, value: Any) -> None:
     """An attribute of a kind that netCDF has: a text or texts of fixed length, 32-bit integers, doubles."""
     values = np.asarray(value)
     if values.dtype.kind == "U":
-        raw = [one.encode() for one in values.ravel().tolist()]
+        raw = [text.encode() for text in values.ravel().tolist()]
         least = 2 if values.ndim else 1  # h5netcdf takes a list of texts of length 1 for one of characters
         kind = h5py.string_dtype("utf-8", max([least, *map(len, raw)]))
         of.attrs.create(name, np.array(raw) if values.ndim else np.bytes_(raw[0]), dtype=kind)

@@ -56,8 +56,8 @@ def open_file(path: Path) -> xarray.Dataset:
         if path.suffix.lower() in (".yaml", ".yml"):
             raise StoreError(f"{path} is a scene, not an HDF5 file: `vibro-sweep run {path}` makes that") from None
         if "already open for write" in str(error):
-            told = f"{path} was left open by a program that was killed; `h5clear -s {path}` frees it"
-            raise StoreError(told) from None
+            advice = f"{path} was left open by a program that was killed; `h5clear -s {path}` frees it"
+            raise StoreError(advice) from None
         raise StoreError(f"{path} is not an HDF5 file, or it is damaged ({cut(str(error))})") from None
     try:
         return _described(data, path, sealed)
@@ -77,13 +77,12 @@ def _described(data: xarray.Dataset, path: Path, sealed: bool) -> xarray.Dataset
     needed = ("title", "history", "provenance", *(["sweep_dimensions"] if attributes["kind"] == SWEEP else []))
     if lacking := [name for name in needed if name not in attributes]:
         raise StoreError(f"{path} is damaged: it has no {', '.join(lacking)}")
-    if (found := attributes.get("format")) not in (OLD, FORMAT):
-        raise StoreError(
-            f"{path} has the format {cut(str(found))} of another version of vibro_sweep; this one reads {OLD}, {FORMAT}"
-        )
+    if (stored := attributes.get("format")) not in (OLD, FORMAT):
+        version = f"the format {cut(str(stored))} of another version of vibro_sweep"
+        raise StoreError(f"{path} has {version}; this one reads {OLD}, {FORMAT}")
     complete = True
     with h5py.File(path, "r") as h5:
-        if found == OLD:
+        if stored == OLD:
             sealed = NETCDF not in h5.attrs
         elif sealed and attributes["kind"] == SWEEP:
             end = end_of(h5)
@@ -91,7 +90,7 @@ def _described(data: xarray.Dataset, path: Path, sealed: bool) -> xarray.Dataset
             if end is not None:
                 attributes["history"] = "\n".join([str(attributes["history"]), *end.pop("history")])
                 attributes["provenance"] = json.dumps(json.loads(str(attributes["provenance"])) | end)
-    texts = {name: one.astype(str) for name, one in data.coords.items() if one.dtype.kind in "SO"}
+    texts = {name: values.astype(str) for name, values in data.coords.items() if values.dtype.kind in "SO"}
     result = data.assign_coords(texts)
     result.set_close(data.close)
     result.attrs = attributes
@@ -105,8 +104,8 @@ def _decoded(value: Any) -> Any:
         return value.decode()
     values = np.asarray(value)
     if values.dtype.kind in "SO" and values.ndim:
-        found = [one.decode() if isinstance(one, bytes) else one for one in values.tolist()]
-        return found[0] if len(found) == 1 else found
+        texts = [text.decode() if isinstance(text, bytes) else text for text in values.tolist()]
+        return texts[0] if len(texts) == 1 else texts
     return values.item() if values.shape in ((), (1,)) and values.dtype.kind in "biuf" else value
 
 

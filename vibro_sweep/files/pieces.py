@@ -44,16 +44,16 @@ Arrays = dict[str, np.ndarray]
 class Pieces:
     """What an unfinished run has computed, by names."""
 
-    def __init__(self, path: Path, about: dict[str, Any]):
-        self.path, self.about, self._began = path, about, time.perf_counter()
+    def __init__(self, path: Path, header: dict[str, Any]):
+        self.path, self.header, self._began = path, header, time.perf_counter()
         self._folder = pieces_of(path)
         self._known: dict[str, Arrays] = {}
         files = sorted(self._folder.glob("*.npz"))
         for file in files:
             with contextlib.suppress(OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
                 with np.load(file, allow_pickle=False) as piece:
-                    found = {name: piece[name] for name in piece.files}
-                self._known[str(found.pop(NAME))] = found
+                    kept_arrays = {name: piece[name] for name in piece.files}
+                self._known[str(kept_arrays.pop(NAME))] = kept_arrays
         self._next = 1 + max((int(file.stem) for file in files if file.stem.isdigit()), default=-1)
 
     def get(self, name: str) -> Arrays | None:
@@ -77,11 +77,11 @@ class Pieces:
 
     def finish(self, data: xarray.Dataset) -> None:
         """Make the file, give it its name, and remove the pieces. Raises StoreError."""
-        about = {name: value for name, value in self.about.items() if name != "replaces"}
+        header = {name: value for name, value in self.header.items() if name != "replaces"}
         how = {"wall_time_s": round(time.perf_counter() - self._began, 3)}
-        about["history"] = f"{about['history']}\n{now()} complete"
-        about["provenance"] = json.dumps(json.loads(about["provenance"]) | how)
-        make(self.path, data.assign_attrs(about | data.attrs), replaces=self.about["replaces"])
+        header["history"] = f"{header['history']}\n{now()} complete"
+        header["provenance"] = json.dumps(json.loads(header["provenance"]) | how)
+        make(self.path, data.assign_attrs(header | data.attrs), replaces=self.header["replaces"])
         self.drop()
 
 
@@ -152,5 +152,5 @@ def _complete(attributes: Mapping[str, Any], path: Path, mode: str) -> Complete:
     except StoreError as error:
         if mode == "resume":
             raise
-        told = f"{path} exists, and holds something else than this run makes"
-        raise StoreError(f"{told}; `overwrite` replaces it, or name another file\n{error}") from None
+        refusal = f"{path} exists, and holds something else than this run makes"
+        raise StoreError(f"{refusal}; `overwrite` replaces it, or name another file\n{error}") from None

@@ -46,14 +46,14 @@ def warn_where_incomplete(data: xarray.Dataset) -> None:
 
 
 @contextmanager
-def sweep_in(given: "str | Path | xarray.Dataset", computes: bool) -> Iterator[Sweep]:
+def sweep_in(source: "str | Path | xarray.Dataset", computes: bool) -> Iterator[Sweep]:
     """The sweep of a file, or of a Dataset, whose numbers are verified when they are read.
 
     computes : whether something is computed from it, and not only drawn: a file without a seal is refused then
     Raises StoreError.
     """
-    if isinstance(given, (str, Path)):
-        path = checked_path("data", given)
+    if isinstance(source, (str, Path)):
+        path = checked_path("data", source)
         with open_file(path) as data:
             if computes and not data.encoding["sealed"]:
                 raise StoreError(f"{foreign(path)}; nothing is computed from it")
@@ -63,7 +63,7 @@ def sweep_in(given: "str | Path | xarray.Dataset", computes: bool) -> Iterator[S
                 _log.warning("%s", foreign(path))
             yield Sweep(data, str(path), lambda name: verify(data, [name]))
     else:
-        yield Sweep(given, "this dataset")
+        yield Sweep(source, "this dataset")
 
 
 def _check_ragged(data: xarray.Dataset, path: Path) -> None:

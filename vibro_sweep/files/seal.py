@@ -35,12 +35,12 @@ class Stretch(NamedTuple):
 def seal(file: BinaryIO | SparseFile, stretches: list[Stretch]) -> None:
     """Write the seal behind the end of a file that is complete but for the numbers in these stretches."""
     joined: list[Stretch] = []
-    for one in sorted(stretches):
-        if joined and one.offset == joined[-1].offset + joined[-1].size:
-            joined[-1] = Stretch(joined[-1].offset, joined[-1].size + one.size)
-        elif one.size:
-            joined.append(one)
-    table = b"".join(_STRETCH.pack(*one) for one in joined)
+    for stretch in sorted(stretches):
+        if joined and stretch.offset == joined[-1].offset + joined[-1].size:
+            joined[-1] = Stretch(joined[-1].offset, joined[-1].size + stretch.size)
+        elif stretch.size:
+            joined.append(stretch)
+    table = b"".join(_STRETCH.pack(*stretch) for stretch in joined)
     end = file.seek(0, os.SEEK_END)
     file.write(table)
     checksum = _checksum(file, joined, end + len(table))
@@ -63,8 +63,8 @@ def is_sealed(file: BinaryIO) -> bool:
         raise SealError("is damaged: its seal does not fit it")
     file.seek(first)
     stretches = [Stretch(*_STRETCH.unpack(file.read(_STRETCH.size))) for _ in range(count)]
-    ends = [0, *(one.offset + one.size for one in stretches)]
-    if any(one.offset < before for one, before in zip(stretches, ends, strict=False)) or ends[-1] > first:
+    ends = [0, *(stretch.offset + stretch.size for stretch in stretches)]
+    if any(stretch.offset < before for stretch, before in zip(stretches, ends, strict=False)) or ends[-1] > first:
         raise SealError("is damaged: its seal does not fit it")
     if _checksum(file, stretches, end) != checksum:
         raise SealError("is damaged: its structure is not the one that was written")

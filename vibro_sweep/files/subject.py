@@ -90,11 +90,11 @@ def check_same(old: Mapping[str, Any], new: Mapping[str, Any], path: Path) -> No
         raise StoreError(f"{path} was made from something else; {remedy}")
 
 
-def _same_scene(kind: str, one: str, other: str) -> bool:
+def _same_scene(kind: str, text: str, other_text: str) -> bool:
     """Whether two scenes say the same, whatever comments they have."""
     parse = parse_continuation if kind in (BRANCHES, CHART) else parse_scene
     try:
-        return one == other or parse(one).to_yaml() == parse(other).to_yaml()
+        return text == other_text or parse(text).to_yaml() == parse(other_text).to_yaml()
     except SceneError:  # of what a function made there is no scene to parse
         return False
 

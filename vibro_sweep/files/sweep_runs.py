@@ -47,15 +47,15 @@ def sweep_run(
     """
     check_outputs(path, mode, inputs)
     with locked(path):
-        there, again = os.path.lexists(path), None
-        if there and mode != "overwrite":
+        existed, again = os.path.lexists(path), None
+        if existed and mode != "overwrite":
             again = _look(data, path, mode, made_by)
             if isinstance(again, Complete):
                 yield again
                 return
         else:
             check_space(size, path)
-            _make(data, following, path, made_by, replaces=there)
+            _make(data, following, path, made_by, replaces=existed)
         with contextlib.closing(SweepFile(path, again)) as file:
             yield file
 
@@ -80,8 +80,8 @@ def _look(data: xarray.Dataset, path: Path, mode: str, made_by: Mapping[str, Any
     except StoreError as error:
         if mode == "resume":
             raise
-        told = f"{path} exists, and holds something else than this run makes"
-        raise StoreError(f"{told}; `overwrite` replaces it, or name another file\n{error}") from None
+        refusal = f"{path} exists, and holds something else than this run makes"
+        raise StoreError(f"{refusal}; `overwrite` replaces it, or name another file\n{error}") from None
     if mode == "new":
         raise StoreError(f"{path} {lacking}; `resume` computes that, `overwrite` begins anew")
     return np.logical_or.reduce([*damaged.values()]) if damaged else None
@@ -89,8 +89,8 @@ def _look(data: xarray.Dataset, path: Path, mode: str, made_by: Mapping[str, Any
 
 def _lacking(old: xarray.Dataset, damaged: dict[str, np.ndarray]) -> str:
     """What `resume` computes of a file, in words; empty where nothing is."""
-    if found := in_words(damaged) or unreadable(old):
-        return f"is damaged: {found}"
+    if why_not := in_words(damaged) or unreadable(old):
+        return f"is damaged: {why_not}"
     if not old.encoding["complete"]:
         missing = int(np.count_nonzero(old["status"].values == NOT_COMPUTED))
         return f"is an interrupted run: {missing:,} of {old['status'].size:,} points are not computed"

@@ -38,8 +38,8 @@ def end_record(about: dict[str, Any]) -> np.ndarray:
 
 def verify(data: xarray.Dataset, names: Iterable[str] | None = None) -> None:
     """Compare the numbers of variables of a file, by default of all, with their checksums. Raises StoreError."""
-    if found := damage(data, names):
-        raise StoreError(f"{data.encoding['source']} is damaged: {found}; {REMEDY}")
+    if damaged := damage(data, names):
+        raise StoreError(f"{data.encoding['source']} is damaged: {damaged}; {REMEDY}")
 
 
 def damage(data: xarray.Dataset, names: Iterable[str] | None = None) -> str:
@@ -63,8 +63,8 @@ def damaged_points(data: xarray.Dataset, names: Iterable[str] | None = None) -> 
         lost = h5["status"][()] == NOT_COMPUTED
         if data.encoding["complete"] and lost.any():
             return {"status": lost}
-        found = {name: wrong_points(h5, name) for name in names if is_verified(h5, name)}
-    return {name: wrong for name, wrong in found.items() if wrong.any()}
+        wrong_of = {name: wrong_points(h5, name) for name in names if is_verified(h5, name)}
+    return {name: wrong for name, wrong in wrong_of.items() if wrong.any()}
 
 
 def unreadable(data: xarray.Dataset, names: Iterable[str] | None = None) -> str:

@@ -6,7 +6,7 @@ from pathlib import Path
 from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.checks.refusals import cut
 from vibro_sweep.files.opening import open_file
-from vibro_sweep.oscillator.built import BUILD
+from vibro_sweep.oscillator.function_model import BUILD
 from vibro_sweep.scene import Scene, load_scene
 from vibro_sweep.scene.scene import parse_scene
 

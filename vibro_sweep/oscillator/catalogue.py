@@ -11,9 +11,9 @@ from vibro_sweep.tables.parameters import B_LEFT, B_RIGHT, B_STAR
 from vibro_sweep.tables.quantity import Parameter, Quantity
 
 # Of all oscillators; the paper's say what a name means.
-OF_A_SYSTEM: dict[str, Parameter] = {one.name: one for one in PAPER}
-OF_A_SYSTEM |= {name: one for model in MODELS.values() for name, one in model.flat(MOST_MASSES).items()} | OF_A_SYSTEM
+OF_A_SYSTEM: dict[str, Parameter] = {x.name: x for x in PAPER}
+OF_A_SYSTEM |= {name: x for model in MODELS.values() for name, x in model.flat(MOST_MASSES).items()} | OF_A_SYSTEM
 
-NUMBERS: dict[str, Parameter] = OF_A_SYSTEM | {one.name: one for one in (B_STAR, B_RIGHT, B_LEFT, *INITIAL)}
+NUMBERS: dict[str, Parameter] = OF_A_SYSTEM | {x.name: x for x in (B_STAR, B_RIGHT, B_LEFT, *INITIAL)}
 AXES: dict[str, Quantity] = NUMBERS | DIMENSIONS
-BY_NAME: dict[str, Quantity] = AXES | {one.name: one for gap in (True, False) for one in variables(MOST_MASSES, gap)}
+BY_NAME: dict[str, Quantity] = AXES | {x.name: x for gap in (True, False) for x in variables(MOST_MASSES, gap)}

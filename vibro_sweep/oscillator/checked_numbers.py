@@ -19,10 +19,10 @@ def units_from(value: Any) -> Units | None:
     """None for values that are not units: neither the word SI nor three positive numbers."""
     if isinstance(value, str):
         return SI if value == "SI" else None
-    found = array_of(value, 1)
-    if found is None or found.shape != (3,) or not all(0 < one < math.inf for one in found.tolist()):
+    sizes = array_of(value, 1)
+    if sizes is None or sizes.shape != (3,) or not all(0 < size < math.inf for size in sizes.tolist()):
         return None
-    return Units(*found.tolist())
+    return Units(*sizes.tolist())
 
 
 def range_of(parameter: Parameter, stops: str) -> Range:

@@ -15,7 +15,7 @@ from vibro_sweep.oscillator.models.declaration import CONTACT, OF_STOPS, WHICH_S
 from vibro_sweep.oscillator.stops import check_stops
 from vibro_sweep.tables.parameters import FREQUENCY, PHASE
 
-NUMBERS = tuple(one for one in CONTACT if one not in (FREQUENCY, PHASE))
+NUMBERS = tuple(quantity for quantity in CONTACT if quantity not in (FREQUENCY, PHASE))
 
 
 @dataclass(frozen=True)
@@ -51,30 +51,30 @@ class Contact:
     stops: Literal["both", "right", "left"] = "both"
 
     def __post_init__(self):
-        for one in (WHICH_STOPS, *OF_STOPS):
-            checked_option(one, getattr(self, one.name))
+        for quantity in (WHICH_STOPS, *OF_STOPS):
+            checked_option(quantity, getattr(self, quantity.name))
         object.__setattr__(self, "contact_normal", checked_normal(self.contact_normal))
-        for one in NUMBERS:
-            value = getattr(self, one.name)
-            if not (value is None and one.optional):
-                object.__setattr__(self, one.name, checked_number(one, value, self.stops))
+        for quantity in NUMBERS:
+            value = getattr(self, quantity.name)
+            if not (value is None and quantity.optional):
+                object.__setattr__(self, quantity.name, checked_number(quantity, value, self.stops))
         check_stops(vars(self))
 
     def __repr__(self) -> str:
-        given = {one.name: getattr(self, one.name) for one in fields(self)}
-        left_out = {one.name: one.default for one in fields(self)}
-        shown = [f"{name}={value!r}" for name, value in given.items() if value != left_out[name]]
+        arguments = {entry.name: getattr(self, entry.name) for entry in fields(self)}
+        left_out = {entry.name: entry.default for entry in fields(self)}
+        shown = [f"{name}={value!r}" for name, value in arguments.items() if value != left_out[name]]
         return f"Contact({', '.join(shown).replace('contact_normal=', '', 1)})"
 
 
-NAMES = tuple(one.name for one in fields(Contact))
+NAMES = tuple(entry.name for entry in fields(Contact))
 
 
 def contacts_in(value: object) -> tuple[Contact, ...]:
     """Contacts of a list of them, or of mappings with their arguments. Raises ParameterError."""
     if not isinstance(value, (list, tuple)) or not value:
         raise ParameterError("contacts", value, "a list of one Contact or more")
-    return tuple(_contact(f"contacts[{i}]", one) for i, one in enumerate(value))
+    return tuple(_contact(f"contacts[{i}]", contact) for i, contact in enumerate(value))
 
 
 def _contact(key: str, value: object) -> Contact:
@@ -85,9 +85,9 @@ def _contact(key: str, value: object) -> Contact:
     return Contact(**value)
 
 
-def check_left_out(given: Mapping[str, Any]) -> None:
+def check_left_out(arguments: Mapping[str, Any]) -> None:
     """Raise ParameterError for a number of a contact that is given beside the list of contacts."""
-    usual = {one.name: one.default for one in fields(Contact)}
+    usual = {entry.name: entry.default for entry in fields(Contact)}
     for name in NAMES:
-        if given.get(name) is not None and given[name] != usual[name]:
-            raise ParameterError(name, given[name], "left out where `contacts` are given, which have it")
+        if arguments.get(name) is not None and arguments[name] != usual[name]:
+            raise ParameterError(name, arguments[name], "left out where `contacts` are given, which have it")

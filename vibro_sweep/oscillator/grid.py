@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 
-from vibro_sweep.oscillator.built import Built, sizes_of, stored_of
+from vibro_sweep.oscillator.function_model import FunctionModel, sizes_of, stored_of
 from vibro_sweep.oscillator.linear import Linear, stack_of, stacked
 from vibro_sweep.oscillator.oscillator import Oscillator, following, in_closed_form
 from vibro_sweep.oscillator.paper_motion import resolved
@@ -24,7 +24,7 @@ def grid(system: Oscillator, axes: dict[str, np.ndarray]) -> dict[str, np.ndarra
     if in_closed_form(system, axes):
         numbers = resolved(numbers)
     else:
-        if isinstance(system, Built):
+        if isinstance(system, FunctionModel):
             numbers |= sizes_of(linears(system, axes))
         numbers |= following(system.model, numbers)
         numbers = {name: value for name, value in numbers.items() if value is not None}
@@ -47,27 +47,27 @@ def linears(system: Oscillator, axes: dict[str, np.ndarray]) -> Linear:
     shape = tuple(len(values) for values in axes.values())
     meshes = zip(axes, np.meshgrid(*axes.values(), indexing="ij"), strict=True)
     changes = {key: values for key, values in meshes if key in system.described}
-    if not isinstance(system, Built):
+    if not isinstance(system, FunctionModel):
         return stack_of(system.family, shape, changes)
     rows = zip(*(values.ravel().tolist() for values in changes.values()), strict=True) if changes else [()]
     each = stacked([_one(system.family, dict(zip(changes, row, strict=True))) for row in rows])
     count = math.prod(shape)
-    return Linear(*(np.broadcast_to(one, (count, *one.shape[1:])).reshape(*shape, *one.shape[1:]) for one in each))
+    return Linear(*(np.broadcast_to(x, (count, *x.shape[1:])).reshape(*shape, *x.shape[1:]) for x in each))
 
 
-def digest(system: Built, axes: dict[str, np.ndarray]) -> str:
+def digest(system: FunctionModel, axes: dict[str, np.ndarray]) -> str:
     """A digest of what the function makes at the points of such a grid: at no more than `MOST_COMPARED`, spread evenly.
 
     Two functions of one name are distinguished by it, and a file of one is not continued by the other.
     """
     axes = {key: values for key, values in axes.items() if key in system.described}
     shape = tuple(len(values) for values in axes.values())
-    count, found = math.prod(shape), hashlib.sha256()
+    count, state_of_hash = math.prod(shape), hashlib.sha256()
     for i in range(min(count, MOST_COMPARED)):
         place = np.unravel_index(i * count // min(count, MOST_COMPARED), shape) if shape else ()
         changes = {key: float(values[k]) for (key, values), k in zip(axes.items(), place, strict=True)}
-        found.update(np.array([*stored_of(_one(system.family, changes)).values()]).tobytes())
-    return found.hexdigest()[:16]
+        state_of_hash.update(np.array([*stored_of(_one(system.family, changes)).values()]).tobytes())
+    return state_of_hash.hexdigest()[:16]
 
 
 def _one(family, changes) -> Linear:

@@ -154,7 +154,7 @@ class Family:
         return slope
 
 
-def taken(q: Linear, which) -> Linear:
+def selected(q: Linear, which) -> Linear:
     """These oscillators of a stack, by an index or a mask; one of them by a number."""
     return Linear(*(None if field is None else np.asarray(field)[which] for field in q))
 
@@ -164,7 +164,7 @@ def stacked(each: Sequence[Linear]) -> Linear:
     return Linear(*(np.stack(field) for field in zip(*each, strict=True)))
 
 
-class Keyed:
+class KeyOfFields:
     """An oscillator as a key of what depends on the values of some fields alone: equal where all of them are."""
 
     def __init__(self, q: Linear, values: tuple):
@@ -178,34 +178,34 @@ class Keyed:
         return self.key == other.key
 
 
-def remembered(*names: str, most: int = 64):
+def memoised(*names: str, most: int = 64):
     """A function of an oscillator and other arguments, whose last results are kept for equal fields `names`."""
 
     values = attrgetter(*names)
 
     def keeping(function):
         @lru_cache(most)
-        def known(key: Keyed, *others):
+        def known(key: KeyOfFields, *others):
             return function(key.q, *others)
 
         @wraps(function)
         def of(q: Linear, *others):
-            return known(Keyed(q, values(q)), *others)
+            return known(KeyOfFields(q, values(q)), *others)
 
         return of
 
     return keeping
 
 
-@remembered(*FORCED, most=1024)  # as many as a curve has points
+@memoised(*FORCED, most=1024)  # as many as a curve has points
 def amplitudes(q: Linear) -> np.ndarray:
     """Complex amplitudes X (N,) of the steady motion Re(X e^{i(omega t + tau)}). LinAlgError in undamped resonance.
 
     Where the force does not drive the mode in resonance, the steady motion without that mode.
     """
-    found = _existing(steady_amplitudes(q))
-    found.flags.writeable = False  # it is shared
-    return found
+    result = _existing(steady_amplitudes(q))
+    result.flags.writeable = False  # it is shared
+    return result
 
 
 def _existing(amplitudes: np.ndarray) -> np.ndarray:
@@ -231,7 +231,7 @@ def grazing_phase(q: Linear) -> float:
     return float(grazing_phases(np.nan if response is None else response))
 
 
-@remembered(*FORCED, most=1024)
+@memoised(*FORCED, most=1024)
 def gap_response(q: Linear) -> complex | None:
     """G of the steady gap g_s + Re(G e^{i(omega t + tau)}); None where there is no steady motion."""
     response = complex(gap_responses(q, steady_amplitudes(q)))
@@ -252,15 +252,15 @@ def static_state(q: Linear) -> np.ndarray | None:
 
     Of several, where there are free modes, the nearest to zero.
     """
-    found = static_states(q)
-    return found if np.isfinite(found).all() else None
+    state = static_states(q)
+    return state if np.isfinite(state).all() else None
 
 
 def stack_of(family: Family, shape: tuple[int, ...], changes: dict[str, np.ndarray]) -> Linear:
     """The oscillators of a family with these numbers, arrays that broadcast to `shape`: a stack, phases resolved."""
-    built = family.build(**(family.numbers | changes))._asdict()
-    own = {name: np.shape(one)[np.ndim(one) - RANKS.get(name, 0) :] for name, one in built.items()}
-    everywhere = {name: np.broadcast_to(one, shape + own[name]) for name, one in built.items() if one is not None}
+    fields = {name: x for name, x in family.build(**(family.numbers | changes))._asdict().items() if x is not None}
+    entries = {name: np.shape(x)[np.ndim(x) - RANKS.get(name, 0) :] for name, x in fields.items()}
+    everywhere = {name: np.broadcast_to(x, shape + entries[name]) for name, x in fields.items()}
     q = Linear(**{"tau": None} | everywhere)
     return q._replace(tau=grazing_phases(gap_responses(q, steady_amplitudes(q)))) if q.tau is None else q
 
@@ -273,7 +273,7 @@ def rest_state(q: Linear) -> np.ndarray:
     gap = np.minimum(np.maximum(0.0, q.low), q.high)
     result, held = np.zeros(q.normal.shape), gap != 0.0
     if held.any():
-        q = taken(q, held)
+        q = selected(q, held)
         result[held] = least_squares(bordered(q.K, q.normal), np.append(q.constant, gap[held][..., None], -1))[..., :-1]
     return result
 
@@ -299,9 +299,9 @@ def contact(*, b, offset=0.0, stops="both", release="displacement", **numbers) -
         "low": offset - b if stops != "right" else -np.inf,
         "high": offset + b if stops != "left" else np.inf,
         "middle": offset,
-        **{f"{field}_low": low.number(*one) for field, one in fields.items()},
-        **{f"{field}_high": high.number(*one) for field, one in fields.items()},
-        **{f"k_{name}": one.number("k_stop", -LEAST) + LEAST for name, one in (("low", low), ("high", high))},
+        **{f"{field}_low": low.number(*number) for field, number in fields.items()},
+        **{f"{field}_high": high.number(*number) for field, number in fields.items()},
+        **{f"k_{name}": stop.number("k_stop", -LEAST) + LEAST for name, stop in (("low", low), ("high", high))},
         "by_force": release == "force" and COMPLIANT in (low.law, high.law),
     }
 

@@ -81,24 +81,24 @@ class Oscillator:
         units: Literal["SI"] | ArrayLike | None = None,
         contacts: Sequence[Contact | Mapping] | None = None,
     ) -> None:  # fmt: skip
-        given = {name: value for name, value in locals().items() if name != "self"}
-        self._set(MODELS["linear"], given)
+        arguments = {name: value for name, value in locals().items() if name != "self"}
+        self._set(MODELS["linear"], arguments)
 
-    def _set(self, model: Model, given: Mapping[str, Any], others: tuple[Contact, ...] = ()) -> None:
-        given = dict(given)
-        if (contacts := given.pop("contacts", None)) is not None:
+    def _set(self, model: Model, arguments: Mapping[str, Any], others: tuple[Contact, ...] = ()) -> None:
+        arguments = dict(arguments)
+        if (contacts := arguments.pop("contacts", None)) is not None:
             others = contacts_in(contacts)
-            if "contact_normal" in (one.name for one in model.options):  # the first one is its own
-                check_left_out(given)
-                given, others = given | vars(others[0]), others[1:]
-        vars(self).update(model=model, given=checked(model, given), others=others)
-        for i, one in enumerate(others, 2):
-            if len(one.contact_normal) != self.masses:
-                what = f"a list of {self.masses} numbers, one for each mass"
-                raise ParameterError(f"contact_normal of contact {i}", [*one.contact_normal], what)
+            if "contact_normal" in (quantity.name for quantity in model.options):  # the first one is its own
+                check_left_out(arguments)
+                arguments, others = arguments | vars(others[0]), others[1:]
+        vars(self).update(model=model, arguments=checked(model, arguments), others=others)
+        for i, contact in enumerate(others, 2):
+            if len(contact.contact_normal) != self.masses:
+                allowed = f"a list of {self.masses} numbers, one for each mass"
+                raise ParameterError(f"contact_normal of contact {i}", [*contact.contact_normal], allowed)
 
     @classmethod
-    def named(cls, name: str, **given: Any) -> Oscillator:
+    def named(cls, name: str, **arguments: Any) -> Oscillator:
         """A model by its name, as it is in a scene; of `two_mass` a System.
 
         Examples
@@ -110,94 +110,98 @@ class Oscillator:
         >>> ball.masses, ball.replace(R=0.6).R
         (1, 0.6)
         """
-        return _made(model_named(name), given)
+        return _made(model_named(name), arguments)
 
     def __setattr__(self, name, value):
         raise AttributeError(f"{name}: an Oscillator is not changed; `replace` makes another one")
 
     def __getattr__(self, name: str):
-        if name.startswith("_") or name in ("model", "given"):  # while it is unpickled there is nothing yet
+        if name.startswith("_") or name in ("model", "arguments"):  # while it is unpickled there is nothing yet
             raise AttributeError(name)
-        if name in self.given:
-            return self.given[name]
+        if name in self.arguments:
+            return self.arguments[name]
         if name in self.described:
             return self.numbers[name]
         raise AttributeError(f"{name!r} is not a number of the model {self.model.name}")
 
     def __dir__(self) -> list[str]:
         """The attributes and the numbers, those of lists one by one, for a prompt that completes names."""
-        return [*super().__dir__(), *self.given, *self.described]
+        return [*super().__dir__(), *self.arguments, *self.described]
 
     def __reduce__(self):
-        return _again, (self.model.name, self.given, self.others)
+        return _again, (self.model.name, self.arguments, self.others)
 
     def __eq__(self, other):
         same = isinstance(other, Oscillator) and self.model.name == other.model.name
-        return same and (self.given, self.others) == (other.given, other.others)
+        return same and (self.arguments, self.others) == (other.arguments, other.others)
 
     def __hash__(self):
-        return hash((self.model.name, tuple(self.given.values()), self.others))
+        return hash((self.model.name, tuple(self.arguments.values()), self.others))
 
     def __repr__(self) -> str:
-        given = self.given
-        if self.others and "contact_normal" in given:  # all in one list
-            given = {name: value for name, value in given.items() if name not in CONTACT_NAMES}
-        arguments, complete = wording.arguments(given | ({"contacts": self._listed} if self.others else {}))
+        arguments = self.arguments
+        if self.others and "contact_normal" in arguments:  # all in one list
+            arguments = {name: value for name, value in arguments.items() if name not in CONTACT_NAMES}
+        shown, complete = wording.arguments(arguments | ({"contacts": self._listed} if self.others else {}))
         by_call = complete and self.model.name == "linear"
-        return f"Oscillator({arguments})" if by_call else f"<{self.model.name}: {arguments}>"
+        return f"Oscillator({shown})" if by_call else f"<{self.model.name}: {shown}>"
 
     @property
     def contacts(self) -> tuple[Contact, ...]:
         """Its contacts; one is computed, an oscillator with several is made, printed and saved alone."""
-        own = {name: self.given[name] for name in CONTACT_NAMES if name in self.given}
-        normal = linear_of(self.model, self.given).normal
-        return Contact(**own | {"contact_normal": normal}), *self.others
+        numbers_of_first = {name: self.arguments[name] for name in CONTACT_NAMES if name in self.arguments}
+        normal = linear_of(self.model, self.arguments).normal
+        return Contact(**numbers_of_first | {"contact_normal": normal}), *self.others
 
     @property
     def _listed(self) -> tuple[Contact, ...]:
         """The contacts that `contacts=` has: all where the model has none of its own."""
-        return self.contacts if "contact_normal" in self.given else self.others
+        return self.contacts if "contact_normal" in self.arguments else self.others
 
     @cached_property
     def described(self) -> dict[str, Parameter]:
         """The numbers, those of lists one by one: m1, m2, ..."""
-        numbers, units = self.numbers, self.model.depending(self.given)
+        numbers, units = self.numbers, self.model.depending(self.arguments)
         flat = self.model.flat(self.masses)
-        return {name: replace(one, units=units.get(name, one.units)) for name, one in flat.items() if name in numbers}
+        return {
+            name: replace(quantity, units=units.get(name, quantity.units))
+            for name, quantity in flat.items()
+            if name in numbers
+        }
 
     @property
     def numbers(self) -> dict[str, Any]:
         """Their values, as given; `tau` may be a word, what follows another number None."""
         result = {}
-        for one in self.model.numbers:
-            value = self.given[one.name]
-            if one.each:
-                result |= {f"{one.name}{i}": entry for i, entry in enumerate(value or (), 1)}
+        for quantity in self.model.numbers:
+            value = self.arguments[quantity.name]
+            if quantity.each:
+                result |= {f"{quantity.name}{i}": entry for i, entry in enumerate(value or (), 1)}
             else:
-                result[one.name] = value
+                result[quantity.name] = value
         return result
 
     @property
     def options(self) -> dict[str, Any]:
         """What is not a number: which stops there are, the units, matrices."""
-        return {one.name: self.given[one.name] for one in self.model.options}
+        return {quantity.name: self.arguments[quantity.name] for quantity in self.model.options}
 
     @property
     def units(self) -> Units | None:
         """What a mass, a length and a time of 1 are; None: its numbers are nondimensional."""
-        return self.given["units"]
+        return self.arguments["units"]
 
     @property
     def masses(self) -> int:
         """N."""
-        return self.model.masses(self.given)
+        return self.model.masses(self.arguments)
 
     @property
     def family(self) -> Family:
         """The same oscillator by its numbers, with their derivatives. Raises ArgumentError where it has several
         contacts."""
         _check_one_contact(self)
-        return Family(partial(_build, self.model.name, tuple(self.given.items())), completed(self.numbers))
+        return Family(partial(_build, self.model.name, tuple(self.arguments.items())), completed(self.numbers))
 
     @cached_property
     def linear(self) -> Linear:
@@ -233,39 +237,41 @@ class Oscillator:
 
     def replace(self, **changes: Any) -> Oscillator:
         """A copy with other numbers. Raises ParameterError, also for a name that is not one of them."""
-        given = dict(self.given)
+        arguments = dict(self.arguments)
         for name, value in changes.items():
-            if name in given:
-                given[name] = value
+            if name in arguments:
+                arguments[name] = value
             elif name in self.numbers:
                 lists = next(
-                    one.name
-                    for one in self.model.numbers
-                    if one.each and name[len(one.name) :].isdecimal() and name.startswith(one.name)
+                    quantity.name
+                    for quantity in self.model.numbers
+                    if quantity.each and name[len(quantity.name) :].isdecimal() and name.startswith(quantity.name)
                 )
-                entries = list(given[lists])
+                entries = list(arguments[lists])
                 entries[int(name[len(lists) :]) - 1] = value
-                given[lists] = entries
+                arguments[lists] = entries
             else:
-                known = [one.name for one in (*self.model.numbers, *self.model.options)]
+                known = [quantity.name for quantity in (*self.model.numbers, *self.model.options)]
                 raise ParameterError(name, value, f"one of {', '.join(known)}")
-        return _made(self.model, given, self.others)
+        return _made(self.model, arguments, self.others)
 
 
 def following(model: Model, numbers: Mapping[str, Any]) -> dict[str, Any]:
     """The numbers of a model that are left out and follow others; numbers : all by name, also arrays."""
-    own = [one for one in model.numbers if one.follows and one not in STOP_NUMBERS]
-    return followers(numbers) | {one.name: numbers[one.follows] for one in own if numbers[one.name] is None}
+    quantities = [quantity for quantity in model.numbers if quantity.follows and quantity not in STOP_NUMBERS]
+    return followers(numbers) | {
+        quantity.name: numbers[quantity.follows] for quantity in quantities if numbers[quantity.name] is None
+    }
 
 
-def _made(model: Model, given: Mapping[str, Any], others: tuple[Contact, ...] = ()) -> Oscillator:
+def _made(model: Model, arguments: Mapping[str, Any], others: tuple[Contact, ...] = ()) -> Oscillator:
     made = object.__new__(System if model is MODEL else Oscillator)
-    made._set(model, given, others)
+    made._set(model, arguments, others)
     return made
 
 
-def _again(name: str, given: Mapping[str, Any], others: tuple[Contact, ...]) -> Oscillator:
-    return _made(MODELS[name], given, others)
+def _again(name: str, arguments: Mapping[str, Any], others: tuple[Contact, ...]) -> Oscillator:
+    return _made(MODELS[name], arguments, others)
 
 
 def _check_one_contact(system: Oscillator) -> None:
@@ -273,8 +279,8 @@ def _check_one_contact(system: Oscillator) -> None:
         raise ArgumentError(f"system: it has {1 + len(system.others)} contacts; those with one are computed; {PAGE}")
 
 
-def _build(name: str, given: tuple[tuple[str, Any], ...], /, **numbers) -> Linear:
-    return linear_of(MODELS[name], dict(given) | numbers)
+def _build(name: str, arguments: tuple[tuple[str, Any], ...], /, **numbers) -> Linear:
+    return linear_of(MODELS[name], dict(arguments) | numbers)
 
 
 POSITIONAL = inspect.Parameter.POSITIONAL_OR_KEYWORD
@@ -283,22 +289,22 @@ POSITIONAL = inspect.Parameter.POSITIONAL_OR_KEYWORD
 def _signature(*declared: Parameter | Option, kind=POSITIONAL) -> inspect.Signature:
     """Of a function with these arguments; those after one that may be left out may be so, too."""
     parameters: list[inspect.Parameter] = []
-    for one in declared:
-        optional = one.optional or one.default is not None
+    for quantity in declared:
+        optional = quantity.optional or quantity.default is not None
         after = kind is POSITIONAL and parameters and parameters[-1].default is not inspect.Parameter.empty
-        default = one.default if optional or after else inspect.Parameter.empty
+        default = quantity.default if optional or after else inspect.Parameter.empty
         words = {PHASE.name: float | Literal["grazing"], UNITS.name: Units | None}
         words |= {option.name: Literal[option.words] for option in (WHICH_STOPS, *OF_STOPS)}
-        known = words.get(one.name, float | None if default is None else float)
-        parameters.append(inspect.Parameter(one.name, kind, default=default, annotation=known))
+        known = words.get(quantity.name, float | None if default is None else float)
+        parameters.append(inspect.Parameter(quantity.name, kind, default=default, annotation=known))
     return inspect.Signature(parameters)
 
 
-def _arguments(name: str, signature: inspect.Signature, /, *values: Any, **given: Any) -> dict[str, Any]:
+def _arguments(name: str, signature: inspect.Signature, /, *values: Any, **named: Any) -> dict[str, Any]:
     """The arguments by name. TypeError where they are not those of the signature."""
-    arguments = bound(name, signature, *values, **given)
-    arguments.apply_defaults()
-    return arguments.arguments
+    call = bound(name, signature, *values, **named)
+    call.apply_defaults()
+    return call.arguments
 
 
 class System(Oscillator):
@@ -314,18 +320,20 @@ class System(Oscillator):
 
     __signature__ = _signature(*PAPER, WHICH_STOPS, *PARAMETERS[len(PAPER) :], *OF_STOPS, UNITS)
 
-    def __init__(self, *numbers: float, **given: Any) -> None:
-        self._set(MODEL, _arguments("System", System.__signature__, *numbers, **given))
+    def __init__(self, *numbers: float, **arguments: Any) -> None:
+        self._set(MODEL, _arguments("System", System.__signature__, *numbers, **arguments))
 
     def __repr__(self) -> str:
         """The call that makes it, without the numbers of compliant stops where there is none."""
-        left_out = {one.name: None for one in OTHER_STOPS} | {one.name: one.default for one in OF_STOPS}
-        given = {name: self.given[name] for name in System.__signature__.parameters}
-        shown = (f"{name}={value!r}" for name, value in given.items() if value != left_out.get(name, ...))
+        left_out = {quantity.name: None for quantity in OTHER_STOPS} | {
+            quantity.name: quantity.default for quantity in OF_STOPS
+        }
+        arguments = {name: self.arguments[name] for name in System.__signature__.parameters}
+        shown = (f"{name}={value!r}" for name, value in arguments.items() if value != left_out.get(name, ...))
         return f"System({', '.join(shown)})"
 
     @classmethod
-    def physical(cls, **given: Any) -> System:
+    def physical(cls, **arguments: Any) -> System:
         """The system with these physical quantities in SI units: kg, m, s, N (section 2 of the paper). Raises
         `ParameterError`.
 
@@ -342,10 +350,10 @@ class System(Oscillator):
         >>> round(system.omega, 6), round(system.b, 6), round(system.zeta, 6)
         (0.63, 4.0, 0.05)
         """
-        given = _arguments("System.physical", _PHYSICAL, **given)
-        stops = checked_option(WHICH_STOPS, given["stops"])
-        same = {name: given[name] for name in given if name in System.__signature__.parameters}
-        return cls(**same | in_numbers(given, stops))
+        arguments = _arguments("System.physical", _PHYSICAL, **arguments)
+        stops = checked_option(WHICH_STOPS, arguments["stops"])
+        alike = {name: arguments[name] for name in arguments if name in System.__signature__.parameters}
+        return cls(**alike | in_numbers(arguments, stops))
 
     @property
     def phase(self) -> float:
@@ -381,8 +389,8 @@ def in_closed_form(system: Oscillator, swept: Iterable[str] = ()) -> bool:
     swept."""
     if not isinstance(system, System):
         return False
-    others = [one for one in PARAMETERS if one.name not in KNOWN]
-    return not any(one.name in swept or system.given[one.name] != one.default for one in others)
+    others = [quantity for quantity in PARAMETERS if quantity.name not in KNOWN]
+    return not any(quantity.name in swept or system.arguments[quantity.name] != quantity.default for quantity in others)
 
 
 def checked_system(system: object) -> None:
@@ -394,6 +402,6 @@ def checked_system(system: object) -> None:
 # what `help` shows of the parameters; absent where docstrings are (python -OO)
 _said, _, _examples = inspect.cleandoc(System.__doc__ or "").partition("\n\nExamples\n")
 if _examples:
-    _parameters = [f"{one.name} : {one.described}; {one.range.text}" for one in PARAMETERS]
+    _parameters = [f"{quantity.name} : {quantity.described}; {quantity.range.text}" for quantity in PARAMETERS]
     _parameters += [f"stops : {', '.join(STOPS)}", f"units : for labels; {UNITS_ALLOWED}; left out: none"]
     System.__doc__ = "\n".join([_said, "\nParameters\n----------", *_parameters, "\nExamples", _examples])

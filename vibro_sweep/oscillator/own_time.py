@@ -63,4 +63,4 @@ def in_users_time(named: dict[str, np.ndarray], masses: int, rate: float) -> dic
 def _powers(masses: int) -> dict[str, int]:
     """Of the variables that have a time in their unit: the power of the rate by which they are scaled."""
     known = (*variables(masses, True), *variables(masses, False))  # whether or not the gap is x1
-    return {one.name: -power for one in known if (power := power_of_seconds(one.units))}
+    return {quantity.name: -power for quantity in known if (power := power_of_seconds(quantity.units))}

@@ -7,7 +7,7 @@ from vibro_sweep.oscillator.models.two_mass import FREE_MOTION, NAMES
 from vibro_sweep.oscillator.modes import modes
 from vibro_sweep.oscillator.stops import followers
 
-KNOWN = {*NAMES, "mu_c", *(one.name for one in CONTACT)}  # numbers that these formulas know
+KNOWN = {*NAMES, "mu_c", *(parameter.name for parameter in CONTACT)}  # numbers that these formulas know
 ROUNDED = 4 * np.finfo(float).eps  # of a force on a mode, relative to its parts
 
 
@@ -19,7 +19,7 @@ def steady_response(mu_m, mu_k, zeta, f2, omega, mu_c=None) -> tuple[np.ndarray,
     where an undamped mode is in resonance; NaN where numbers leave the range of the floats. mu_c: None is mu_k.
     """
     psi, omega_squared = modes(mu_m, mu_k)
-    given = mu_m, mu_k, zeta, f2, omega, mu_c
+    free_numbers = mu_m, mu_k, zeta, f2, omega, mu_c
     zeta, f2, omega = (np.asarray(value, float)[..., None] for value in (zeta, f2, omega))
     parts = psi[..., 0, :] * (1 - f2), psi[..., 1, :] * f2
     force = parts[0] + parts[1]
@@ -32,7 +32,7 @@ def steady_response(mu_m, mu_k, zeta, f2, omega, mu_c=None) -> tuple[np.ndarray,
     if mu_c is None:
         return d, e
     proportional = (np.asarray(mu_c) == np.asarray(mu_k))[..., None]
-    other_d, other_e = _without_modes(*given)
+    other_d, other_e = _without_modes(*free_numbers)
     return np.where(proportional, d, other_d), np.where(proportional, e, other_e)
 
 
@@ -76,8 +76,8 @@ def resolved(numbers: dict) -> dict:
     numbers = with_phase(numbers)
     follow = followers(numbers) | ({"mu_c": numbers["mu_k"]} if numbers["mu_c"] is None else {})
     tau = numbers["tau"]
-    found = numbers | follow | {"tau": float(tau) if np.ndim(tau) == 0 else tau}
-    return {name: value for name, value in found.items() if value is not None}
+    everything = numbers | follow | {"tau": float(tau) if np.ndim(tau) == 0 else tau}
+    return {name: value for name, value in everything.items() if value is not None}
 
 
 def grazing_clearance(numbers: dict) -> np.ndarray:

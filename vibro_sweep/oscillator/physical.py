@@ -36,9 +36,9 @@ PHYSICAL = (  # quantities in SI units, from which the numbers of a System follo
 CONVERTED = ("M1", "M2", "K1", "K2", "C1", "C2", "P1", "P2", "Omega", "B", "B0")
 
 
-def in_numbers(given: Mapping[str, Any], stops: str) -> dict[str, Any]:
+def in_numbers(arguments: Mapping[str, Any], stops: str) -> dict[str, Any]:
     """The numbers and units of a System with these quantities. Raises ParameterError."""
-    M1, M2, K1, K2, C1, C2, P1, P2, Omega, B, B0 = (_checked(name, given[name], stops) for name in CONVERTED)
+    M1, M2, K1, K2, C1, C2, P1, P2, Omega, B, B0 = (_checked(name, arguments[name], stops) for name in CONVERTED)
     if P1 + P2 == 0:
         raise ParameterError("P1", P1, "such that P1 + P2 > 0: lengths are measured in (P1 + P2)/K1")
     frequency = math.sqrt(K1) / math.sqrt(M1)  # no product of two given numbers: it could leave the range
@@ -52,23 +52,23 @@ def in_numbers(given: Mapping[str, Any], stops: str) -> dict[str, Any]:
         "offset": ("B0", B0 / (P1 + P2) * K1),
     }
     for name, (key, value) in numbers.items():
-        if not math.isfinite(value) or (value == 0) != (given[key] == 0):
-            raise ParameterError(key, given[key], f"such that {name} = {value!r} is in the range of the floats")
-    found = {name: value for name, (_, value) in numbers.items()}
+        if not math.isfinite(value) or (value == 0) != (arguments[key] == 0):
+            raise ParameterError(key, arguments[key], f"such that {name} = {value!r} is in the range of the floats")
+    result = {name: value for name, (_, value) in numbers.items()}
     sizes = 2 * [K1, frequency * M1, P1 + P2]
-    for one, size in zip(OTHER_STOPS, sizes, strict=True):
-        value = number_of(given[one.name])
-        found[one.name] = given[one.name] if value is None else value / size
+    for name_of_stop, size in zip(OTHER_STOPS, sizes, strict=True):
+        value = number_of(arguments[name_of_stop.name])
+        result[name_of_stop.name] = arguments[name_of_stop.name] if value is None else value / size
     first, second = Fraction(C1) * Fraction(K2), Fraction(C2) * Fraction(K1)
     if abs(first - second) > max(first, second) / 10**9:  # not proportional, beyond the rounding of the input
         if C1 == 0:
             raise ParameterError("C1", C1, "> 0 where C2 > 0: the damping ratio of the second damper is C2/C1")
-        found["mu_c"] = C2 / C1
-    return found | {"units": units_from((M1, (P1 + P2) / K1, 1 / frequency))}  # none where they leave the range
+        result["mu_c"] = C2 / C1
+    return result | {"units": units_from((M1, (P1 + P2) / K1, 1 / frequency))}  # none where they leave the range
 
 
 def _checked(name: str, value: Any, stops: str) -> float:
-    quantity = next(one for one in PHYSICAL if one.name == name)
+    quantity = next(name_of_stop for name_of_stop in PHYSICAL if name_of_stop.name == name)
     allowed, number = range_of(quantity, stops), number_of(value)
     if number is None or not (math.isfinite(number) and allowed.holds(number)):
         raise ParameterError(name, value, allowed.text.replace("a number", "a finite number"))

@@ -10,7 +10,7 @@ import numpy as np
 
 def vector(entries) -> np.ndarray:
     """(..., N) from N numbers, or arrays (...) of one number of each oscillator."""
-    if any(isinstance(one, np.ndarray) for one in entries):
+    if any(isinstance(entry, np.ndarray) for entry in entries):
         return np.stack(np.broadcast_arrays(*entries), -1)
     return np.array(entries)
 
@@ -18,7 +18,7 @@ def vector(entries) -> np.ndarray:
 def matrix(rows) -> np.ndarray:
     """(..., N, N) from rows of such numbers."""
     size = len(rows)
-    flat = vector([one for row in rows for one in row])
+    flat = vector([entry for row in rows for entry in row])
     return flat.reshape(*flat.shape[:-1], size, size)
 
 
@@ -69,7 +69,7 @@ def solved(A: np.ndarray, b: np.ndarray) -> np.ndarray:
     except np.linalg.LinAlgError:
         if A.ndim == 2:
             return np.full(b.shape, np.nan)
-        return np.stack([solved(*one) for one in zip(A, np.broadcast_to(b, A.shape[:-1]), strict=True)])
+        return np.stack([solved(*entry) for entry in zip(A, np.broadcast_to(b, A.shape[:-1]), strict=True)])
 
 
 def least_squares(A: np.ndarray, b: np.ndarray) -> np.ndarray:

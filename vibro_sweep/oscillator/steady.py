@@ -62,7 +62,7 @@ def static_states(q) -> np.ndarray:
     """
     if not np.any(q.constant):
         return np.zeros(q.constant.shape)
-    found = least_squares(q.K, q.constant)
-    left_over = np.abs(times(q.K, found) - q.constant).max(-1)
+    static = least_squares(q.K, q.constant)
+    left_over = np.abs(times(q.K, static) - q.constant).max(-1)
     balanced = left_over <= UNBALANCED * np.abs(q.constant).max(-1)
-    return np.where(balanced[..., None], found, np.nan)
+    return np.where(balanced[..., None], static, np.nan)

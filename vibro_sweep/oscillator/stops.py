@@ -8,7 +8,7 @@ from vibro_sweep.oscillator.contact_laws import LAWS, RIGID, STOP_NUMBERS
 from vibro_sweep.oscillator.contact_laws.compliant import LAW as COMPLIANT
 from vibro_sweep.oscillator.contact_laws.contact_law import ContactLaw
 
-NUMBERS = tuple(one.name for one in STOP_NUMBERS)
+NUMBERS = tuple(option.name for option in STOP_NUMBERS)
 RIGID_ALONE = (
     "with k_stop there are sweeps of the flow, `simulate`, `lyapunov`, periodic orbits, branches, curves and windows"
 )
@@ -38,19 +38,22 @@ class Stop(NamedTuple):
         return missing if value is None else value
 
 
-def stop_of(given: Mapping[str, Any], side: str) -> Stop:
+def stop_of(arguments: Mapping[str, Any], side: str) -> Stop:
     """The stop on a side, right or left; what is left out of the left one follows the right one."""
-    own = law_given(given, side)
-    law = own or law_given(given, "right")
+    law_of_side = law_given(arguments, side)
+    law = law_of_side or law_given(arguments, "right")
     if law is None:
         return Stop(None, {})
     pairs = zip(law.names["right"], law.names[side], strict=True)
-    return Stop(law, {name: given.get(name) if given.get(one) is None else given[one] for name, one in pairs})
+    return Stop(
+        law,
+        {name: arguments.get(name) if arguments.get(option) is None else arguments[option] for name, option in pairs},
+    )
 
 
-def compliance_of(given: Mapping[str, Any], side: str) -> tuple[float, float, float] | None:
+def compliance_of(arguments: Mapping[str, Any], side: str) -> tuple[float, float, float] | None:
     """Stiffness, damping and preload of the stop on a side, right or left; None where it is rigid."""
-    stop = stop_of(given, side)
+    stop = stop_of(arguments, side)
     return tuple(stop.number(name, 0.0) for name in COMPLIANT.names["right"]) if stop.law is COMPLIANT else None
 
 
@@ -63,61 +66,67 @@ def completed(numbers: Mapping[str, Any]) -> dict[str, Any]:
     return {**numbers, **unsaid}
 
 
-def has_compliant(given: Mapping[str, Any]) -> bool:
+def has_compliant(arguments: Mapping[str, Any]) -> bool:
     """Whether numbers of a compliant stop are given."""
-    return any(law_given(given, side) is COMPLIANT for side in ("right", "left"))
+    return any(law_given(arguments, side) is COMPLIANT for side in ("right", "left"))
 
 
-def law_given(given: Mapping[str, Any], side: str) -> ContactLaw | None:
+def law_given(arguments: Mapping[str, Any], side: str) -> ContactLaw | None:
     """The law that the numbers of this side alone say."""
-    return next((law for law in LAWS.values() if given.get(law.names[side][0]) is not None), None)
+    return next((law for law in LAWS.values() if arguments.get(law.names[side][0]) is not None), None)
 
 
-def followers(given: Mapping[str, Any]) -> dict[str, Any]:
+def followers(arguments: Mapping[str, Any]) -> dict[str, Any]:
     """The numbers of a left stop that are left out and follow those of the right one."""
-    law = stop_of(given, "left").law
+    law = stop_of(arguments, "left").law
     pairs = zip(law.names["left"], law.names["right"], strict=True) if law else ()
-    return {name: given[one] for name, one in pairs if given.get(name) is None and given.get(one) is not None}
+    return {
+        name: arguments[option]
+        for name, option in pairs
+        if arguments.get(name) is None and arguments.get(option) is not None
+    }
 
 
-def check_stops(given: Mapping[str, Any]) -> None:
+def check_stops(arguments: Mapping[str, Any]) -> None:
     """Raise ParameterError unless the numbers and options of the stops fit together."""
-    stops = given.get("stops", "both")
+    stops = arguments.get("stops", "both")
     for side in ("right", "left"):
-        keys = [law.names[side][0] for law in LAWS.values() if given.get(law.names[side][0]) is not None]
+        keys = [law.names[side][0] for law in LAWS.values() if arguments.get(law.names[side][0]) is not None]
         for key in keys[1:]:
-            raise ParameterError(key, given[key], f"left out where {keys[0]} is given: a stop is {' or '.join(LAWS)}")
-    right, left = law_given(given, "right"), stop_of(given, "left").law
+            raise ParameterError(
+                key, arguments[key], f"left out where {keys[0]} is given: a stop is {' or '.join(LAWS)}"
+            )
+    right, left = law_given(arguments, "right"), stop_of(arguments, "left").law
     for law in LAWS.values():
         of_right, of_left = law.names["right"], law.names["left"]
         if law not in (right, left):
-            _refuse(given, of_right[1:], f"it belongs to a stop with {of_right[0]}")
-            for one in law.options:
-                if given.get(one.name, one.words[0]) != one.words[0]:
-                    raise ParameterError(one.name, given[one.name], f"left out where no stop is {law.name}")
+            _refuse(arguments, of_right[1:], f"it belongs to a stop with {of_right[0]}")
+            for option in law.options:
+                if arguments.get(option.name, option.words[0]) != option.words[0]:
+                    raise ParameterError(option.name, arguments[option.name], f"left out where no stop is {law.name}")
         if left is not law:
-            _refuse(given, of_left[1:], f"it belongs to a stop with {of_left[0]}")
+            _refuse(arguments, of_left[1:], f"it belongs to a stop with {of_left[0]}")
         if stops == "right" and (law is not RIGID or right is not RIGID):
-            _refuse(given, of_left, "there is no left stop")
+            _refuse(arguments, of_left, "there is no left stop")
     if (left if stops == "left" else right) is None:
         keys = [f"{law.names['right'][0]}, of a {law.name} stop" for law in LAWS.values() if law is not RIGID]
         raise ParameterError("R", None, f"given; or {' or '.join(keys)}")
     for side in ("right", "left"):
-        _check_stiffness(given, side)
+        _check_stiffness(arguments, side)
 
 
-def _check_stiffness(given: Mapping[str, Any], side: str) -> None:
+def _check_stiffness(arguments: Mapping[str, Any], side: str) -> None:
     """Raise ParameterError for a stop without stiffness that is no damper alone."""
     key = COMPLIANT.names[side][0]
-    if given.get(key) != 0:
+    if arguments.get(key) != 0:
         return
-    _, damping, preload = compliance_of(given, side)
+    _, damping, preload = compliance_of(arguments, side)
     if damping == 0 or preload > 0:
-        raise ParameterError(key, given[key], f"a number > 0 {DAMPER_ALONE}")
+        raise ParameterError(key, arguments[key], f"a number > 0 {DAMPER_ALONE}")
 
 
-def _refuse(given: Mapping[str, Any], names: tuple[str, ...], wrong: str) -> None:
+def _refuse(arguments: Mapping[str, Any], names: tuple[str, ...], wrong: str) -> None:
     """Refuse the numbers with these names that are given. wrong: why."""
     for name in names:
-        if given.get(name) is not None:
-            raise ParameterError(name, given[name], f"left out: {wrong}")
+        if arguments.get(name) is not None:
+            raise ParameterError(name, arguments[name], f"left out: {wrong}")

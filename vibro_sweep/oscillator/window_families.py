@@ -39,13 +39,13 @@ def families(itineraries: list[str], symmetric: list[bool], periods: list[int], 
     for w, (word, kind, period) in enumerate(zip(itineraries, symmetric, periods, strict=True)):
         if word:
             groups[word, bool(kind)].setdefault(int(period), w)
-    found = []
+    result = []
     for (word, kind), by_period in groups.items():
         for run in _runs([(period, lo[w], w) for period, w in sorted(by_period.items())]):
             if len(run) >= LEAST:
                 step = run[1][0] - run[0][0]
-                found.append(WindowFamily(word, kind, tuple(w for _, _, w in run), run[0][0], step))
-    return sorted(found, key=lambda family: (-len(family.windows), family.period))
+                result.append(WindowFamily(word, kind, tuple(w for _, _, w in run), run[0][0], step))
+    return sorted(result, key=lambda family: (-len(family.windows), family.period))
 
 
 def _runs(rows: list[tuple[int, float, int]]) -> list[list[tuple[int, float, int]]]:

@@ -19,9 +19,9 @@ def itinerary_text(word: str) -> str:
     return f"{word[: LONGEST_WORD - 3]}... ({word.count('R')} R, {word.count('L')} L)"
 
 
-def arguments(given: Mapping[str, object]) -> tuple[str, bool]:
+def arguments(named: Mapping[str, object]) -> tuple[str, bool]:
     """The arguments as they are given in Python, and whether these are all of them."""
-    known = {name: value for name, value in given.items() if value is not None}
+    known = {name: value for name, value in named.items() if value is not None}
     full = ", ".join(f"{name}={plain(value)!r}" for name, value in known.items())
     if len(full) <= LONGEST:
         return full, True
@@ -59,7 +59,7 @@ def _brief(value: object, text=repr) -> str:
 
 def plain(value: object) -> object:
     """The value as it is given: lists in place of tuples, but of those with a text of their own."""
-    return [plain(one) for one in value] if type(value) in (tuple, list) else value
+    return [plain(item) for item in value] if type(value) in (tuple, list) else value
 
 
 def without_rounding(value: float, spread: float) -> float:

@@ -10,7 +10,7 @@ from vibro_sweep.tables.quantity import Observable, Quantity
 
 def described(of: Quantity, units: str) -> dict[str, Any]:
     """The attributes of a variable in these units: `long_name` is short, for axes; `description` is a sentence."""
-    found = {"units": units, "long_name": of.long_name, "description": sentence(of.text)}
+    attributes = {"units": units, "long_name": of.long_name, "description": sentence(of.text)}
     if of.flags:
-        found |= {"flag_values": np.array(of.codes, of.dtype), "flag_meanings": " ".join(of.flags)}
-    return found | (dict(of.attributes) if isinstance(of, Observable) else {})
+        attributes |= {"flag_values": np.array(of.codes, of.dtype), "flag_meanings": " ".join(of.flags)}
+    return attributes | (dict(of.attributes) if isinstance(of, Observable) else {})

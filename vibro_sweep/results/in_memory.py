@@ -16,8 +16,8 @@ class InMemory(Statuses):
 
     def __init__(self, data: xarray.Dataset):
         room = {
-            name: xarray.Variable(one.dims, np.array(one.values), one.attrs, fastpath=True)
-            for name, one in data.data_vars.items()
+            name: xarray.Variable(variable.dims, np.array(variable.values), variable.attrs, fastpath=True)
+            for name, variable in data.data_vars.items()
         }
         self.data = xarray.Dataset(room, data.coords, data.attrs)
         lists = {name: value for name, value in data.attrs.items() if isinstance(value, list) and len(value) == 1}
@@ -26,19 +26,19 @@ class InMemory(Statuses):
 
     def write(self, box: Box, arrays: dict[str, np.ndarray]) -> None:
         """Keep a block."""
-        for name, one in self.data.data_vars.items():
-            one.values[box] = arrays[str(name)]
+        for name, variable in self.data.data_vars.items():
+            variable.values[box] = arrays[str(name)]
 
     def read(self, name: str) -> np.ndarray:
         """All numbers of a variable."""
         return self.data[name].values
 
-    def finish(self, following: dict[str, np.ndarray], about: dict[str, Any]) -> float:
+    def finish(self, following: dict[str, np.ndarray], attributes: dict[str, Any]) -> float:
         """Keep what follows from all points, and how the run went. Returns its seconds."""
         for name, values in following.items():
             self.data[name].values[...] = values
         seconds = round(time.perf_counter() - self._began, 3)
-        self.data.attrs["history"] = "\n".join([self.data.attrs["history"], *about.pop("history")])
-        how = json.loads(self.data.attrs["provenance"]) | about | {"wall_time_s": seconds}
+        self.data.attrs["history"] = "\n".join([self.data.attrs["history"], *attributes.pop("history")])
+        how = json.loads(self.data.attrs["provenance"]) | attributes | {"wall_time_s": seconds}
         self.data.attrs["provenance"] = json.dumps(how)
         return seconds

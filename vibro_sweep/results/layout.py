@@ -6,8 +6,8 @@ from collections.abc import Sequence
 import numpy as np
 import xarray
 
-from vibro_sweep.oscillator.built import stored_names
 from vibro_sweep.oscillator.catalogue import AXES
+from vibro_sweep.oscillator.function_model import stored_names
 from vibro_sweep.results.described import described
 from vibro_sweep.scene import Scene, resolved_numbers
 from vibro_sweep.tables.exponents import RUNNING, periods_read
@@ -22,10 +22,10 @@ MATRIX = ("row", "column")  # the dimensions of a matrix
 
 def quantities(scene: Scene) -> dict[str, Observable]:
     """The variables that a scene asks for, `status` first; what it does not observe is not there."""
-    asked = scene.observe | ({TRAJECTORY} if scene.trajectory else set()) | ({SETTLE} if scene.settle else set())
+    keys_asked = scene.observe | ({TRAJECTORY} if scene.trajectory else set()) | ({SETTLE} if scene.settle else set())
     system = scene.system
-    found = asked_for(asked, scene.section.kind == "impact", system.masses, not system.gap_is_x1)
-    return {"status": found.pop("status"), **found}
+    wanted_quantities = asked_for(keys_asked, scene.section.kind == "impact", system.masses, not system.gap_is_x1)
+    return {"status": wanted_quantities.pop("status"), **wanted_quantities}
 
 
 def coordinates(scene: Scene) -> dict[str, np.ndarray]:
@@ -67,8 +67,8 @@ def size(scene: Scene) -> int:
     axes = coordinates(scene)
     lead = math.prod(scene.shape)
     numbers = [
-        math.prod(shape_of(scene, one, axes)) * np.dtype(one.dtype).itemsize + 4 * lead  # and its checksums
-        for one in quantities(scene).values()
+        math.prod(shape_of(scene, quantity, axes)) * np.dtype(quantity.dtype).itemsize + 4 * lead  # and its checksums
+        for quantity in quantities(scene).values()
     ]
     over = [math.prod(len(scene.sweep[key]) for key in keys) for keys in resolved_numbers.dimensions(scene).values()]
     return sum(numbers) + 8 * (sum(over) + sum(len(values) for values in axes.values()))
@@ -87,7 +87,7 @@ def dataset(scene: Scene) -> xarray.Dataset:
         keys = resolved_numbers.dimensions(scene)[name]
         coords[name] = variable(keys, values, of, units)
     for name, values in resolved_numbers.matrices(scene).items():
-        option = next(one for one in scene.system.model.options if one.name == name)
+        option = next(option for option in scene.system.model.options if option.name == name)
         of = Quantity(name, f"matrix {name}", option.text, units=option.units)
         coords[name] = variable(MATRIX, values, of, units)
     lead = (*scene.sweep, *(["start"] if scene.n_starts > 1 else []))
@@ -95,9 +95,9 @@ def dataset(scene: Scene) -> xarray.Dataset:
     for name, quantity in quantities(scene).items():
         empty = np.broadcast_to(np.array(quantity.fill, quantity.dtype), shape_of(scene, quantity, axes))
         variables[name] = variable((*lead, *quantity.dimensions), empty, quantity, units)
-    about = {"kind": SWEEP, "title": f"vibro_sweep: {scene.name}", "scene": scene.text}
-    about |= {"sweep_dimensions": list(scene.sweep)}
-    return xarray.Dataset(variables, coords, about | resolved_numbers.attributes(scene))
+    attributes = {"kind": SWEEP, "title": f"vibro_sweep: {scene.name}", "scene": scene.text}
+    attributes |= {"sweep_dimensions": list(scene.sweep)}
+    return xarray.Dataset(variables, coords, attributes | resolved_numbers.attributes(scene))
 
 
 def variable(dimensions: Sequence[str], values, of: Quantity, units: Units | None) -> xarray.Variable:
@@ -109,9 +109,9 @@ def _following(scene: Scene) -> dict[str, np.ndarray]:
     """The numbers that follow from swept ones, over the keys that they depend on."""
     keys = resolved_numbers.dimensions(scene)
     shape = tuple(len(scene.sweep[key]) for key in resolved_numbers.depends_on(scene))
-    found = {name: np.empty(shape) for name in keys}
-    for box in resolved_numbers.slabs(scene) if found else ():
+    values_of = {name: np.empty(shape) for name in keys}
+    for box in resolved_numbers.slabs(scene) if values_of else ():
         for name, values in resolved_numbers.following(scene, box).items():
-            if name in found:
-                found[name][box] = values
-    return found
+            if name in values_of:
+                values_of[name][box] = values
+    return values_of

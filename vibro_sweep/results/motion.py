@@ -53,7 +53,7 @@ class Motion:
 
         t, x, v = self.unit * self.t, *(self[name] for name in self.names)
         parts = np.split(np.arange(len(t)), np.flatnonzero(np.diff(t) <= 0) + 1)
-        splines = [CubicHermiteSpline(t[one], x[one], v[one]) for one in parts if len(one) > 1]
+        splines = [CubicHermiteSpline(t[stretch], x[stretch], v[stretch]) for stretch in parts if len(stretch) > 1]
         at = [np.interp(np.arange((len(s.x) - 1) * times + 1) / times, np.arange(len(s.x)), s.x) for s in splines]
         values = ([s(t, n) for s, t in zip(splines, at, strict=True)] for n in (0, 1))
         states = dict(zip(self.names, map(np.concatenate, values), strict=True))

@@ -14,7 +14,7 @@ from vibro_sweep.tables.quantity import Quantity
 KINDS = (BRANCHES, WINDOWS, CHART)
 
 
-def about(kind: str, title: str, scene: str, attributes: Mapping[str, Any]) -> dict[str, Any]:
+def attributes_of(kind: str, title: str, scene: str, attributes: Mapping[str, Any]) -> dict[str, Any]:
     """The attributes of such a Dataset. scene : the YAML text that was computed; of windows that of the sweep"""
     return {"kind": kind, "title": f"vibro_sweep: {title}", "scene": scene, "sweep_dimensions": [], **attributes}
 
@@ -22,7 +22,7 @@ def about(kind: str, title: str, scene: str, attributes: Mapping[str, Any]) -> d
 def dataset(attributes: Mapping[str, Any], of: Iterable[Quantity], arrays: Mapping[str, np.ndarray]) -> xarray.Dataset:
     """The Dataset of columns, with their arrays by name."""
     return xarray.Dataset(
-        {one.name: (one.dimensions, np.asarray(arrays[one.name], one.dtype), described(one, one.units)) for one in of},
+        {x.name: (x.dimensions, np.asarray(arrays[x.name], x.dtype), described(x, x.units)) for x in of},
         attrs=dict(attributes),
     )
 

@@ -21,9 +21,9 @@ class Sweep:
     def __init__(self, data: xarray.Dataset, name: str, verify: Callable[[str], None] | None = None):
         self.data, self.name, self._verify = data, name, verify
         self.in_memory = verify is None
-        swept = [str(one) for one in np.atleast_1d(data.attrs["sweep_dimensions"])]
-        self.keys = [one for one in swept if one in data.dims]
-        self.held = {one: float(data[one]) for one in swept if one not in data.dims and one in data.coords}
+        swept = [str(key) for key in np.atleast_1d(data.attrs["sweep_dimensions"])]
+        self.keys = [key for key in swept if key in data.dims]
+        self.held = {key: float(data[key]) for key in swept if key not in data.dims and key in data.coords}
         self.attrs: dict[str, Any] = {**data.attrs, "sweep_dimensions": self.keys}
         self._known = {"status": data["status"].values} if "status" in data else {}  # before any other number
         if verify is not None and self._known:
@@ -37,8 +37,8 @@ class Sweep:
     @property
     def numbers(self) -> dict[str, float]:
         """The coordinates that have one value, but for swept ones."""
-        found = {str(name): one for name, one in self.data.coords.items() if one.ndim == 0 and one.dtype.kind in "if"}
-        return {name: one.item() for name, one in found.items() if name not in self.held}
+        scalars = {str(name): x for name, x in self.data.coords.items() if x.ndim == 0 and x.dtype.kind in "if"}
+        return {name: x.item() for name, x in scalars.items() if name not in self.held}
 
     @property
     def sizes(self) -> dict[str, int]:
@@ -50,9 +50,9 @@ class Sweep:
 
     def dims(self, name: str) -> tuple[str, ...]:
         """Names of the dimensions of a variable, those of the sweep first and in their order."""
-        found = [str(one) for one in self.data[name].dims]
-        lead = [one for one in (*self.keys, "start") if one in found]
-        return (*lead, *(one for one in found if one not in lead))
+        dimensions = [str(dimension) for dimension in self.data[name].dims]
+        lead = [dimension for dimension in (*self.keys, "start") if dimension in dimensions]
+        return (*lead, *(dimension for dimension in dimensions if dimension not in lead))
 
     def values(self, name: str, first: Sequence[str] = (), index: Any = ()) -> np.ndarray:
         """The values of a variable, at an index, with these dimensions first, in their order. Raises StoreError."""

@@ -31,7 +31,7 @@ class AnyScene(ABC):
     name: str
     system: Oscillator
     source: Path | None = field(default=None, kw_only=True)
-    given: str | None = field(default=None, init=False)
+    as_written: str | None = field(default=None, init=False)
     checked: bool = field(default=False, init=False)
 
     @abstractmethod
@@ -41,7 +41,7 @@ class AnyScene(ABC):
     @property
     def text(self) -> str:
         """The YAML text that it was read from; of another scene `to_yaml`."""
-        return self.to_yaml() if self.given is None else self.given
+        return self.to_yaml() if self.as_written is None else self.as_written
 
     def to_yaml(self) -> str:
         """The scene as YAML, from its numbers; `text` is what it was read from."""
@@ -62,16 +62,16 @@ class AnyScene(ABC):
         kind = "" if system.model.name == DEFAULT else f"{system.model.name}: "
         return textwrap.fill(f"  system    {kind}{said}", 88, subsequent_indent=12 * " ", break_long_words=False)
 
-    def _with_origin(self, **about: object) -> Self:
+    def _with_origin(self, **attributes: object) -> Self:
         """This scene, of a new one: where it is from, its text, that it was checked. No arguments of the class, since
         `dataclasses.replace` would hand them on to a scene that says something else."""
-        vars(self).update(about)
+        vars(self).update(attributes)
         return self
 
     def _check_names(self, changes: Collection[str]) -> None:
         """Raise SceneError for a name that is no attribute that says what is computed."""
-        about = [one.name for one in fields(AnyScene)]
-        known = ["system", *(one.name for one in fields(self) if one.name not in about)]
+        attributes = [entry.name for entry in fields(AnyScene)]
+        known = ["system", *(entry.name for entry in fields(self) if entry.name not in attributes)]
         for key in changes:
             if key not in known:
                 raise SceneError(self.name, [f"{cut(key)}: unknown; allowed here: {', '.join(known)}"])
@@ -85,4 +85,4 @@ def parsed(text: str, name: str, source: Path | None, scene_of: Callable[[object
         raise SceneError(name, [str(error)]) from None
     except SceneError as error:
         raise SceneError(name, located(error.problems, lines_of(text))) from None
-    return scene._with_origin(given=text, source=source)
+    return scene._with_origin(as_written=text, source=source)

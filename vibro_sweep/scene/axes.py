@@ -16,26 +16,26 @@ MAX_SPAN = 1e300  # between the ends of an axis: no difference of its values lea
 def axis_values(path: str, axis: StepAxis | CountAxis | ListAxis) -> tuple[np.ndarray | None, list[str]]:
     """The values of one axis, (n,), strictly monotonic and read-only; or None and what is wrong."""
     if isinstance(axis, ListAxis):
-        count, key, given = len(axis.values), f"{path}.values", axis.values
+        count, key, value = len(axis.values), f"{path}.values", axis.values
         if count == 0:
-            return None, [problem(key, given, "is empty; there must be at least one value")]
+            return None, [problem(key, value, "is empty; there must be at least one value")]
     elif isinstance(axis, CountAxis):
-        count, key, given = axis.num, f"{path}.num", axis.num
+        count, key, value = axis.num, f"{path}.num", axis.num
         if count < 2:
-            return None, [problem(key, given, "must be a whole number >= 2")]
+            return None, [problem(key, value, "must be a whole number >= 2")]
         if axis.start == axis.stop:
             return None, [problem(f"{path}.stop", axis.stop, "must differ from start")]
     else:
-        key, given = f"{path}.step", axis.step
+        key, value = f"{path}.step", axis.step
         if axis.step == 0:
-            return None, [problem(key, given, "must not be 0")]
+            return None, [problem(key, value, "must not be 0")]
         if axis.stop != axis.start and (axis.stop > axis.start) != (axis.step > 0):
             direction = "> 0" if axis.stop > axis.start else "< 0"
             text = f"has the wrong sign: from {axis.start:g} to {axis.stop:g} it must be {direction}"
-            return None, [problem(key, given, text)]
+            return None, [problem(key, value, text)]
         count = math.floor((_exact(axis.stop) - _exact(axis.start)) / _exact(axis.step)) + 1
     if count > MAX_VALUES:
-        return None, [problem(key, given, f"makes {Decimal(count):.3g} values; at most {MAX_VALUES:.0e} are allowed")]
+        return None, [problem(key, value, f"makes {Decimal(count):.3g} values; at most {MAX_VALUES:.0e} are allowed")]
 
     if isinstance(axis, ListAxis):
         values = np.array(axis.values)
@@ -53,7 +53,7 @@ def axis_values(path: str, axis: StepAxis | CountAxis | ListAxis) -> tuple[np.nd
         text = "must rise or fall from value to value, none of them twice"
         if not isinstance(axis, ListAxis):
             text = "makes steps below the resolution of double precision"
-        return None, [problem(key, given, text)]
+        return None, [problem(key, value, text)]
     values.flags.writeable = False
     return values, []
 

@@ -13,7 +13,7 @@ from vibro_sweep.tables.coordinates import state
 
 from .any_scene import AnyScene, parsed
 from .continue_form import ORIGINS
-from .data import Foreign
+from .data import InvalidValue
 from .fields import Form
 from .form import continuation_form
 from .problems import SceneError, form_problems, problem
@@ -62,7 +62,7 @@ class Continuation(AnyScene):
 
     def data(self) -> dict[str, Any]:
         """The data that its YAML holds; numbers that are the default are left out."""
-        return _data_of({one.name: getattr(self, one.name) for one in fields(self)})
+        return _data_of({entry.name: getattr(self, entry.name) for entry in fields(self)})
 
     def replace(self, **changes) -> "Continuation":
         """A copy with other values of `system`, `origin`, `begin`, `parameter` and the other attributes.
@@ -75,11 +75,11 @@ class Continuation(AnyScene):
         origin = changes.get("origin", self.origin)
         if not (isinstance(origin, str) and origin in ORIGINS):
             raise SceneError(self.name, [not_allowed("origin", origin, f"one of {', '.join(ORIGINS)}")])
-        attributes = {one.name: getattr(self, one.name) for one in fields(self)}
+        attributes = {entry.name: getattr(self, entry.name) for entry in fields(self)}
         for key, value in changes.items():
             data = as_data(key, value)
             # nothing here is long: what is, is refused as a whole
-            attributes[key] = Foreign(value) if isinstance(data, (list, dict)) and len(data) > LONGEST else data
+            attributes[key] = InvalidValue(value) if isinstance(data, (list, dict)) and len(data) > LONGEST else data
         return replace(_continuation_of(_data_of(attributes), self.name), source=self.source)
 
     @property
@@ -148,13 +148,13 @@ def _continuation_of(data: Any, name: str) -> Continuation:
     except ValidationError as error:
         raise SceneError(name, form_problems(error, scheme, data)) from None
     body = getattr(form, "continue")
-    given, problems = _origin(getattr(body, "from"))
+    chosen, problems = _origin(getattr(body, "from"))
     ranges, more = _ranges(body.parameter, list(data["continue"]["parameter"]))
     problems += more
     if len(ranges) == 1 and "of" in body.model_fields_set:
         problems.append("continue.of: belongs to two keys of `parameter`; leave it out")
     first = next(iter(ranges), "")
-    missing = first and given[0] in _IN_FILES and getattr(form.system, first, None) is None
+    missing = first and chosen[0] in _IN_FILES and getattr(form.system, first, None) is None
     system, more = system_of(form, {first: ranges[first]} if missing else {}, kind, masses)
     problems += more
     for key, limits in ranges.items() if system is not None else ():
@@ -164,40 +164,40 @@ def _continuation_of(data: Any, name: str) -> Continuation:
             continue
         problems += [line for value in limits for line in _outside(system, key, value)]
         value = numbers[key]
-        if given[0] in _AT_SYSTEM and not limits[0] <= value <= limits[1]:
+        if chosen[0] in _AT_SYSTEM and not limits[0] <= value <= limits[1]:
             problems.append(
                 problem(f"system.{key}", value, f"must be in continue.parameter: {limits[0]:g} .. {limits[1]:g}")
             )
     if problems:
         raise SceneError(name, problems)
-    begin = given[1]
-    if given[0] == "state":
+    begin = chosen[1]
+    if chosen[0] == "state":
         begin = tuple(begin.model_dump().values())
     origin = getattr(body, "from")
     return Continuation(
-        Path(name).stem, system, given[0], begin, origin.periods, origin.special, origin.largest,
+        Path(name).stem, system, chosen[0], begin, origin.periods, origin.special, origin.largest,
         ranges, body.of, body.follow, body.depth,
     )  # fmt: skip
 
 
 def _origin(origin: Form) -> tuple[tuple[str, Any], list[str]]:
     """The key of `from` that is given and its value, and what is wrong."""
-    found = [key for key in ORIGINS if key in origin.model_fields_set]
-    if len(found) != 1:
-        named = f"has {', '.join(found)}" if found else "says nothing"
+    named_origins = [key for key in ORIGINS if key in origin.model_fields_set]
+    if len(named_origins) != 1:
+        named = f"has {', '.join(named_origins)}" if named_origins else "says nothing"
         return ("free", None), [f"continue.from: {named}; it must have one of {', '.join(ORIGINS)}"]
     problems = [
         f"continue.from.{key}: belongs to {' or '.join(others)}; leave it out"
         for key, others in _WITH.items()
-        if key in origin.model_fields_set and found[0] not in others
+        if key in origin.model_fields_set and named_origins[0] not in others
     ]
-    if found[0] == "branches" and origin.special is None:
+    if named_origins[0] == "branches" and origin.special is None:
         problems.append("continue.from.special: missing; it must be given with branches")
-    if found[0] == "itinerary" and set(origin.itinerary) - {"R", "L"}:
+    if named_origins[0] == "itinerary" and set(origin.itinerary) - {"R", "L"}:
         problems.append(problem("continue.from.itinerary", origin.itinerary, "must be a word of R and L"))
-    if found[0] == "free" and origin.free is not True:
+    if named_origins[0] == "free" and origin.free is not True:
         problems.append("continue.from.free: must be true, or write `from: free`")
-    return (found[0], getattr(origin, found[0])), problems
+    return (named_origins[0], getattr(origin, named_origins[0])), problems
 
 
 def _ranges(parameter: Form, keys: list[str]) -> tuple[dict[str, tuple[float, float]], list[str]]:

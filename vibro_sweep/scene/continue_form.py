@@ -30,7 +30,7 @@ def continue_form(numbers: Iterable[Parameter], masses: int) -> type[Form]:
         "OrbitState",
         __base__=Form,
         __doc__="A state at t = 0 near the orbit.",
-        **{one.name: (float, Field(default=0.0, description=one.text)) for one in coordinates(masses)},
+        **{quantity.name: (float, Field(default=0.0, description=quantity.text)) for quantity in coordinates(masses)},
     )
     origin = create_model(
         "FromForm",
@@ -50,7 +50,7 @@ def continue_form(numbers: Iterable[Parameter], masses: int) -> type[Form]:
         "ParameterForm",
         __base__=Form,
         __doc__="The number that changes along branches, and its bounds; of two, curves, and branches in the first.",
-        **{one.name: (Numbers, Field(default=None, description=one.text, **PAIR)) for one in numbers},
+        **{quantity.name: (Numbers, Field(default=None, description=quantity.text, **PAIR)) for quantity in numbers},
     )
     return create_model(
         "ContinueForm",

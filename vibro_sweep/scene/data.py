@@ -11,7 +11,7 @@ from vibro_sweep.checks.refusals import hint_for, shown
 DEEPEST = 8  # lists and mappings within each other; a scene has four
 
 
-class Foreign:
+class InvalidValue:
     """Stands for a value that no YAML holds, until the form of the scene refuses it."""
 
     def __init__(self, value: object):
@@ -42,7 +42,7 @@ def data_from(value: object, levels: int = DEEPEST) -> object:
     sequence = isinstance(value, Sequence) and not isinstance(value, NO_NUMBERS) and levels
     if sequence and not (isinstance(value, range) and not -MOST < value.stop - value.start < MOST):
         return [data_from(item, levels - 1) for item in value]
-    return Foreign(value)
+    return InvalidValue(value)
 
 
 def _key(key: object) -> str:

@@ -12,10 +12,10 @@ BEFORE = LONGEST // 3  # letters of a long line before the first one that differ
 
 def differences(old: str, new: str) -> str:
     """Lines of the old scene (-) and of the new one (+)."""
-    one, other = old.splitlines(), new.splitlines()
+    old_lines, new_lines = old.splitlines(), new.splitlines()
     changed = []
-    for tag, i, j, k, m in difflib.SequenceMatcher(None, one, other, autojunk=False).get_opcodes():
-        for was, now in zip_longest(one[i:j], other[k:m]) if tag != "equal" else ():
+    for tag, i, j, k, m in difflib.SequenceMatcher(None, old_lines, new_lines, autojunk=False).get_opcodes():
+        for was, now in zip_longest(old_lines[i:j], new_lines[k:m]) if tag != "equal" else ():
             at = sum(takewhile(bool, map(eq, was or "", now or "")))
             changed += [f"  {sign} {_about(line, at)}" for sign, line in (("-", was), ("+", now)) if line is not None]
     return "\n".join(changed[:MOST] + (["  ..."] if len(changed) > MOST else []))

@@ -32,7 +32,7 @@ def number(parameter: Parameter) -> tuple[type, Any]:
     return float, field
 
 
-def given(description: str, **bounds) -> Any:
+def described_field(description: str, **bounds) -> Any:
     return Field(description=description, json_schema_extra=bounds)
 
 

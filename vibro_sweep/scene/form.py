@@ -12,7 +12,7 @@ from pydantic import ConfigDict, Discriminator, Field, InstanceOf, Strict, Tag, 
 
 from vibro_sweep.checks.arguments import MAX_COUNT
 from vibro_sweep.checks.meant import SYNONYMS
-from vibro_sweep.oscillator.built import Built
+from vibro_sweep.oscillator.function_model import FunctionModel
 from vibro_sweep.oscillator.models import DEFAULT, MODELS
 from vibro_sweep.oscillator.models.declaration import Model
 from vibro_sweep.oscillator.oscillator import Oscillator
@@ -22,7 +22,7 @@ from vibro_sweep.tables.picture_kinds import PICTURES
 from vibro_sweep.tables.quantity import Parameter
 
 from .continue_form import continue_form
-from .fields import Form, Whole, given, keys, swept
+from .fields import Form, Whole, described_field, keys, swept
 from .systems import PhysicalSystemForm, form_of
 
 MADE = InstanceOf[Oscillator]
@@ -32,29 +32,29 @@ SHOWN = 8  # masses that the JSON Schema knows the coordinates of
 class StepAxis(Form):
     """start, start + step, ... up to stop, which is included where a whole number of steps leads to it."""
 
-    start: float = given("first value")
-    stop: float = given("end of the values")
-    step: float = given("positive upwards, negative downwards", **{"not": {"const": 0}})
+    start: float = described_field("first value")
+    stop: float = described_field("end of the values")
+    step: float = described_field("positive upwards, negative downwards", **{"not": {"const": 0}})
 
 
 class CountAxis(Form):
     """`num` equidistant values from start to stop, both included."""
 
-    start: float = given("first value")
-    stop: float = given("last value")
-    num: Whole = given("how many, at least 2", minimum=2)
+    start: float = described_field("first value")
+    stop: float = described_field("last value")
+    num: Whole = described_field("how many, at least 2", minimum=2)
 
 
 class ListAxis(Form):
     """The values themselves, rising or falling."""
 
-    values: list[float] = given("at least one", minItems=1)
+    values: list[float] = described_field("at least one", minItems=1)
 
 
 def _axis(value):
-    found = keys(value)
-    by_number = "num" in found or ("step" not in found and found & {*SYNONYMS["num"]})
-    return "axis of values" if "values" in found else "axis by number" if by_number else "axis by step"
+    known_keys = keys(value)
+    by_number = "num" in known_keys or ("step" not in known_keys and known_keys & {*SYNONYMS["num"]})
+    return "axis of values" if "values" in known_keys else "axis by number" if by_number else "axis by step"
 
 
 Axis = Annotated[
@@ -74,8 +74,8 @@ def _sweep_form(name: str, numbers: Iterable[Parameter], masses: int) -> type[Fo
         name,
         __base__=_Axes,
         __doc__="One key: a bifurcation diagram; two: a parameter plane, or a plane of initial states.",
-        **{one.name: (Axis, swept(one.text, one.range.bounds)) for one in numbers},
-        **{one.name: (Axis, swept(f"{one.text} at t = 0", {})) for one in coordinates(masses)},
+        **{quantity.name: (Axis, swept(quantity.text, quantity.range.bounds)) for quantity in numbers},
+        **{quantity.name: (Axis, swept(f"{quantity.text} at t = 0", {})) for quantity in coordinates(masses)},
     )
 
 
@@ -84,7 +84,7 @@ def _state_form(name: str, masses: int, base: type[Form] = Form, **more) -> type
         name,
         __base__=base,
         **more,
-        **{one.name: (float, Field(default=0.0, description=one.text)) for one in coordinates(masses)},
+        **{quantity.name: (float, Field(default=0.0, description=quantity.text)) for quantity in coordinates(masses)},
     )
 
 
@@ -105,8 +105,8 @@ _REST = "One state at t = 0, with the gap between the stops; rest where nothing 
 
 
 def _start(value):
-    found = keys(value)
-    return "random start" if found & {"random", "seed"} else "followed start" if "follow" in found else "one start"
+    named = keys(value)
+    return "random start" if named & {"random", "seed"} else "followed start" if "follow" in named else "one start"
 
 
 class OrbitForm(Form):
@@ -153,9 +153,9 @@ def scene_form(name: str, masses: int, made: bool = False) -> type[Form]:
     return _scene_form(MADE if made else _systems([model]), model.flat(masses).values(), masses)
 
 
-def built_form(built: Built) -> type[Form]:
+def form_of_function(system: FunctionModel) -> type[Form]:
     """The form of a sweep whose oscillators a function makes."""
-    return _scene_form(MADE, built.described.values(), built.masses)
+    return _scene_form(MADE, system.described.values(), system.masses)
 
 
 def _scene_form(system, numbers: Iterable[Parameter], masses: int) -> type[Form]:
@@ -212,8 +212,8 @@ def _scene_form(system, numbers: Iterable[Parameter], masses: int) -> type[Form]
 
 def _systems(models: Iterable[Model]):
     """A `system` of one of these models; of the default also in physical units."""
-    forms = [Annotated[form_of(one.name), Tag(f"the model {one.name}")] for one in models]
-    if DEFAULT in (one.name for one in models):
+    forms = [Annotated[form_of(model.name), Tag(f"the model {model.name}")] for model in models]
+    if DEFAULT in (model.name for model in models):
         forms.append(Annotated[PhysicalSystemForm, Tag("physical units")])
     if len(forms) == 1:
         return get_args(forms[0])[0]
@@ -242,19 +242,19 @@ def _system(value) -> str:
 
 def tagged(form: type[Form]) -> dict[str, type[Form]]:
     """The forms that a key of a scene may have, by the words that distinguish them in errors."""
-    found = {"axis by step": StepAxis, "axis by number": CountAxis, "axis of values": ListAxis}
+    forms_of_axes = {"axis by step": StepAxis, "axis by number": CountAxis, "axis of values": ListAxis}
     for key in ("system", "start"):
-        for one in get_args(form.model_fields[key].annotation) if key in form.model_fields else ():
-            kind, tag = get_args(one)
-            found[tag.tag] = kind
-    return found
+        for member in get_args(form.model_fields[key].annotation) if key in form.model_fields else ():
+            kind, tag = get_args(member)
+            forms_of_axes[tag.tag] = kind
+    return forms_of_axes
 
 
 def json_schema(names: Iterable[str] = tuple(MODELS)) -> dict:
     """JSON Schema, draft 7, of a scene of these models: what yaml-language-server reads."""
     models = [MODELS[name] for name in names]
     masses = SHOWN if len(models) > 1 else 2
-    numbers = {key: one for model in reversed(models) for key, one in model.flat(masses).items()}
+    numbers = {key: quantity for model in reversed(models) for key, quantity in model.flat(masses).items()}
     schema = _draft_7(_scene_form(_systems(models), numbers.values(), masses).model_json_schema())
     _add_branches(schema, numbers.values(), masses)
     return {"$schema": "http://json-schema.org/draft-07/schema#"} | schema

@@ -14,7 +14,7 @@ from vibro_sweep.checks.refusals import LONGEST, cut, shown
 from vibro_sweep.tables.observables import WORDS
 
 from . import slips
-from .data import Foreign
+from .data import InvalidValue
 from .fields import Form
 from .form import StepAxis, tagged
 
@@ -59,7 +59,7 @@ def problem(path: str, value: object, text: str) -> str:
     """One line: the key path, the value as the user would write it, what is wrong and what is allowed."""
     shown = json.dumps(_shortened(value), ensure_ascii=False)
     shown = _YAML_WORDS.get(shown, shown)
-    hint = value.hint if isinstance(value, Foreign) else ""
+    hint = value.hint if isinstance(value, InvalidValue) else ""
     return f"{cut(path)} = {cut(shown)}: {text}{hint}"
 
 
@@ -74,7 +74,7 @@ def _shortened(value: object, levels: int = LONGEST):
     if isinstance(value, str):
         return value[:LONGEST]
     small = value is None or isinstance(value, bool) or (isinstance(value, int) and abs(value) < 10**LONGEST)
-    return value if small else repr(value) if isinstance(value, Foreign) else shown(value)
+    return value if small else repr(value) if isinstance(value, InvalidValue) else shown(value)
 
 
 def form_problems(error: ValidationError, form: type[Form], data: object = None) -> list[str]:
@@ -98,24 +98,24 @@ def form_problems(error: ValidationError, form: type[Form], data: object = None)
 
 
 def _line(item, form, data) -> str:
-    kind, given, ctx = item["type"], item["input"], item.get("ctx", {})
+    kind, entry, ctx = item["type"], item["input"], item.get("ctx", {})
     model, path = _place(item["loc"], form)
     keys = list(model.model_fields)
     if kind == "missing":
-        both = path.startswith("sweep.") and path.endswith(".step")
+        needs_two = path.startswith("sweep.") and path.endswith(".step")
         alone = f"; {slips.ONE_MASS}" if path == "system.physical.M2" else ""
-        return f"{path}: missing; {'step or num' if both else 'it'} must be given{alone}"
+        return f"{path}: missing; {'step or num' if needs_two else 'it'} must be given{alone}"
     if kind == "extra_forbidden":
-        return problem(path, given, _unknown(item["loc"], keys, given, data))
+        return problem(path, entry, _unknown(item["loc"], keys, entry, data))
     if kind == "literal_error":
         words = [word.strip("'") for word in ctx["expected"].replace(" or ", ", ").split(", ")]
         also = " or a number (radians)" if "tau as a word" in item["loc"] else ""
-        hint = slips.other_form(path, given) or (slips.number_in_text(given) if also else None)
-        return problem(path, given, f"{did_you_mean(given, words)}allowed: {', '.join(words)}{also}{_and(hint)}")
+        hint = slips.other_form(path, entry) or (slips.number_in_text(entry) if also else None)
+        return problem(path, entry, f"{did_you_mean(entry, words)}allowed: {', '.join(words)}{also}{_and(hint)}")
     if kind == "model_type":
         form = _AXIS_FORMS if model is StepAxis else f"the keys {', '.join(keys)}"
-        return problem(path, given, f"must be a mapping with {form}{_and(slips.other_form(path, given))}")
-    beyond = isinstance(given, int) and not isinstance(given, bool)
+        return problem(path, entry, f"must be a mapping with {form}{_and(slips.other_form(path, entry))}")
+    beyond = isinstance(entry, int) and not isinstance(entry, bool)
     text = {
         "float_type": "must be a number in the range of the floats" if beyond else "must be a number",
         "int_type": "must be a whole number",
@@ -129,30 +129,30 @@ def _line(item, form, data) -> str:
         "less_than_equal": f"must be a whole number <= {ctx.get('le')}",
     }.get(kind, item["msg"])
     if kind in ("frozen_set_type", "list_type"):
-        text += _and(slips.other_form(path, given, OBSERVATIONS))
-    text += _and(slips.of_list(path, given))
-    is_text = isinstance(given, str) and kind in ("float_type", "int_type")
-    return problem(path, given, text + (f", not text{_and(slips.number_in_text(given))}" if is_text else ""))
+        text += _and(slips.other_form(path, entry, OBSERVATIONS))
+    text += _and(slips.of_list(path, entry))
+    is_text = isinstance(entry, str) and kind in ("float_type", "int_type")
+    return problem(path, entry, text + (f", not text{_and(slips.number_in_text(entry))}" if is_text else ""))
 
 
-def _unknown(loc, keys: list[str], given, data) -> str:
+def _unknown(loc, keys: list[str], entry, data) -> str:
     """The message for a word that is not a key, and the key that may be meant."""
     key, place = str(loc[-1]), loc[0]
-    if given is None and (hint := slips.key_without_value(cut(key))):
+    if entry is None and (hint := slips.key_without_value(cut(key))):
         return hint
     if key in ("step", "num") and {"step", "num"} & set(keys):
         return f"step and num exclude each other; write {_AXIS_FORMS}"
     if place == "sweep" and len(loc) == 2 and (hint := slips.of_physical(key, data.get("system"))):
         return f"unknown key; {hint}"
-    if place == "sweep" and len(loc) == 2 and (hint := slips.of_swept_frequency(key, given, data.get("system"))):
+    if place == "sweep" and len(loc) == 2 and (hint := slips.of_swept_frequency(key, entry, data.get("system"))):
         return f"unknown key; {hint}"
-    if place == "sweep" and len(loc) == 2 and slips.has_words(given):
+    if place == "sweep" and len(loc) == 2 and slips.has_words(entry):
         return "unknown key; only numbers are swept: make a run for each word"
     if place == "system" and (hint := slips.of_mass(key, data.get("system")) or slips.of_damping(key, keys)):
         return f"unknown key; {hint}"
     if place == "system" and (hint := why_not_computed(key)):
         return f"unknown key; {hint}"
-    if "Omega" in keys and (hint := slips.of_frequency(key, given)):
+    if "Omega" in keys and (hint := slips.of_frequency(key, entry)):
         return f"unknown key; {hint}"
     return f"unknown key; {did_you_mean(key, keys)}allowed here: {', '.join(keys)}"
 
@@ -168,8 +168,8 @@ def located(problems: Iterable[str], lines: Mapping[str, int]) -> list[str]:
 
 def _line_of(text: str, lines: Mapping[str, int]) -> int | None:
     paths = [text[: end.start()] for end in re.finditer(r" =|:", text)]  # a key may hold either
-    found = [path for path in paths if path in lines]
-    return lines.get(found[-1] if found else re.split(r" =|: ", text)[0].rpartition(".")[0])
+    known_paths = [path for path in paths if path in lines]
+    return lines.get(known_paths[-1] if known_paths else re.split(r" =|: ", text)[0].rpartition(".")[0])
 
 
 def _place(loc, form: type[Form]) -> tuple[type[Form], str]:

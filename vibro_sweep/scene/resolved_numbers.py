@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from vibro_sweep.oscillator.built import Built, sizes_of, stored_names, stored_of
+from vibro_sweep.oscillator.function_model import FunctionModel, sizes_of, stored_names, stored_of
 from vibro_sweep.oscillator.grid import grid, linears
 from vibro_sweep.oscillator.linear import Linear
 from vibro_sweep.oscillator.models import DEFAULT
@@ -45,7 +45,7 @@ def attributes(scene: Scene) -> dict[str, Any]:
     result = {name: value for name, value in result.items() if name not in (*scene.sweep, *dimensions(scene))}
     result |= {name: _plain(value) for name, value in system.options.items() if value is not None}
     result = {name: value for name, value in result.items() if name not in (UNITS.name, *matrices(scene))}
-    if isinstance(system, Built):
+    if isinstance(system, FunctionModel):
         result = {name: value for name, value in result.items() if name != "tau"}
     result |= {} if system.model.name == DEFAULT else {"type": system.model.name}
     result |= {} if system.gap_is_x1 else {"contact_normal": system.linear.normal}
@@ -64,8 +64,8 @@ def attributes(scene: Scene) -> dict[str, Any]:
 def matrices(scene: Scene) -> dict[str, np.ndarray]:
     """The matrices among the system's options: netCDF has no attributes of two dimensions, so they are variables of a
     file."""
-    found = {name: np.array(value) for name, value in scene.system.options.items() if isinstance(value, tuple)}
-    return {name: value for name, value in found.items() if value.ndim == 2}
+    entries = {name: np.array(value) for name, value in scene.system.options.items() if isinstance(value, tuple)}
+    return {name: value for name, value in entries.items() if value.ndim == 2}
 
 
 def _plain(value):
@@ -91,7 +91,7 @@ def _graze(scene: Scene) -> tuple[str, ...]:
 def dimensions(scene: Scene) -> dict[str, tuple[str, ...]]:
     """The numbers that follow from swept ones, and the keys over which they are stored."""
     keys = depends_on(scene)
-    if isinstance(scene.system, Built):
+    if isinstance(scene.system, FunctionModel):
         names = (*stored_names(scene.system.masses), "b_right", "b_left")
         return dict.fromkeys((name for name in names if name not in scene.sweep), keys) if keys else {}
     fixed = "tau" in scene.sweep or scene.system.tau != "grazing" or keys == ("offset",)
@@ -103,7 +103,7 @@ def following(scene: Scene, box: tuple[slice, ...]) -> dict[str, np.ndarray]:
     """Numbers that follow over a box of the keys of `depends_on`, each of the box's shape: tau, and where both stops
     graze."""
     axes = {key: scene.sweep[key][part] for key, part in zip(depends_on(scene), box, strict=True)}
-    if isinstance(scene.system, Built):
+    if isinstance(scene.system, FunctionModel):
         return _of_built(linears(scene.system, axes))
     numbers = grid(scene.system, axes)
     offset = numbers.get("offset", 0.0)
@@ -111,8 +111,8 @@ def following(scene: Scene, box: tuple[slice, ...]) -> dict[str, np.ndarray]:
         size, middle = grazing_clearance(numbers), 0.0
     else:
         size, middle = _free_motion(linears(scene.system, axes))
-    found = {"tau": numbers["tau"], "b_star": size, "b_right": size + middle - offset, "b_left": size - middle + offset}
-    return {name: found[name] for name in ("tau", *_graze(scene))}
+    sides = {"tau": numbers["tau"], "b_star": size, "b_right": size + middle - offset, "b_left": size - middle + offset}
+    return {name: sides[name] for name in ("tau", *_graze(scene))}
 
 
 def _of_built(q: Linear) -> dict[str, np.ndarray]:

@@ -10,7 +10,7 @@ import numpy as np
 from pydantic import ValidationError
 
 from vibro_sweep.checks.real import array_of
-from vibro_sweep.oscillator.built import Built
+from vibro_sweep.oscillator.function_model import FunctionModel
 from vibro_sweep.oscillator.grid import digest, grid
 from vibro_sweep.oscillator.models import MODELS
 from vibro_sweep.oscillator.oscillator import Oscillator
@@ -19,7 +19,7 @@ from vibro_sweep.tables.units import NONE, unit_in
 
 from .any_scene import AnyScene, parsed
 from .combinations import combination_problems, stop_problems
-from .form import built_form, scene_form
+from .form import form_of_function, scene_form
 from .problems import SceneError, form_problems, problem
 from .size import size_problems
 from .starts import Start, start_of, start_problems, stops_of
@@ -103,10 +103,10 @@ class Scene(AnyScene):
     @cached_property
     def text(self) -> str:
         """The YAML text that it was read from; of another scene `to_yaml`. Raises SceneError for no scene."""
-        if self.given is not None:
-            return self.given
+        if self.as_written is not None:
+            return self.as_written
         data = self.data()
-        if isinstance(self.system, Built):  # there is no text for what the function does: its matrices stand for it
+        if isinstance(self.system, FunctionModel):  # no text says what the function does: its matrices stand for it
             return yaml_of(data | {"system": data["system"] | {"matrices": digest(self.system, self.sweep)}})
         return yaml_of(data) if self.checked else parse_scene(yaml_of(data), self.name).text
 
@@ -238,8 +238,9 @@ def scene_of(data: object, name: str) -> Scene:
         raise SceneError(name, ["continue: this is a scene of branches or curves; it sweeps nothing"])
     made = data.get("system") if isinstance(data, dict) else None
     kind, masses = (made.model.name, made.masses) if isinstance(made, Oscillator) else kind_of(data, name)
-    numbers = made.described if isinstance(made, Built) else MODELS[kind].flat(masses)
-    scheme = built_form(made) if isinstance(made, Built) else scene_form(kind, masses, isinstance(made, Oscillator))
+    numbers = made.described if isinstance(made, FunctionModel) else MODELS[kind].flat(masses)
+    by_function, given = isinstance(made, FunctionModel), isinstance(made, Oscillator)
+    scheme = form_of_function(made) if by_function else scene_form(kind, masses, given)
     try:
         form = scheme.model_validate(data)
     except ValidationError as error:

@@ -16,13 +16,13 @@ NONDIMENSIONAL = (
 )
 
 AXIS = "{start: 6.5, stop: 6.9, num: 401}"
-MATRICES = {one.name for model in MODELS.values() for one in model.options if one.kind == "matrix"}
+MATRICES = {option.name for model in MODELS.values() for option in model.options if option.kind == "matrix"}
 
 
 def key_without_value(key: str) -> str | None:
     """The message for a key that has no value: YAML has made it of a missing space, or of a comma."""
-    if found := re.fullmatch(r"(\w+)\s*[:=]\s*(.+)", key):
-        return f"write `{found[1]}: {found[2]}`, with a colon and a space after it"
+    if match := re.fullmatch(r"(\w+)\s*[:=]\s*(.+)", key):
+        return f"write `{match[1]}: {match[2]}`, with a colon and a space after it"
     if re.fullmatch(r"\d+", key):
         return f"a comma separates entries; a decimal number has a point: 0.{key}, not 0,{key}"
     return None
@@ -53,82 +53,82 @@ def _ratio(text: str) -> float:
     return float(above) / float(below)
 
 
-def other_form(path: str, given: object, words: Iterable[str] = ()) -> str | None:
+def other_form(path: str, value: object, words: Iterable[str] = ()) -> str | None:
     """The hint for a value of another form than its key needs, by the key."""
     key = path.rpartition(".")[2]
     if path == "start":
-        return _start(given)
+        return _start(value)
     if path == "observe":
-        parts = re.split(r"[,;\s]+", given) if isinstance(given, str) else given
+        parts = re.split(r"[,;\s]+", value) if isinstance(value, str) else value
         names = [*parts] if isinstance(parts, (list, Mapping)) else []
         known = [name for name in (meant(name, words) for name in names) if name]
         return f"write observe: [{', '.join(known or ['section', 'lyapunov'])}]"
-    if path == "system.stops" and str(given).lower() in ("none", "no", "false", "off", "free", "[]", "0"):
+    if path == "system.stops" and str(value).lower() in ("none", "no", "false", "off", "free", "[]", "0"):
         return "the motion without stops is that with a large b, and `vibro-sweep grazing` says how large"
-    if path == "system.stops" and isinstance(given, list) and _is_increasing_pair(given):
-        lo, hi = given
+    if path == "system.stops" and isinstance(value, list) and _is_increasing_pair(value):
+        lo, hi = value
         return f"write b: {(hi - lo) / 2:g} and offset: {(hi + lo) / 2:g}, with stops: both"
-    if path == "system.stops" and isinstance(given, (Mapping, list)):
-        sides = [side for side in ("left", "right") if side in list(given)]
+    if path == "system.stops" and isinstance(value, (Mapping, list)):
+        sides = [side for side in ("left", "right") if side in list(value)]
         which = sides[0] if len(sides) == 1 else "both"
         return f"write stops: {which}; where the stops stand is said by b"
     if path == "sweep":
-        name = given if isinstance(given, str) else next(iter(given), "b") if isinstance(given, list) else "b"
+        name = value if isinstance(value, str) else next(iter(value), "b") if isinstance(value, list) else "b"
         return f"write sweep: {{{name if str(name).isidentifier() else 'b'}: {AXIS}}}"
     if path.startswith("sweep.") and key == "values":
-        return f"write values: [{given}]" if isinstance(given, (int, float)) else "write values: [6.5, 6.6, 6.7]"
+        return f"write values: [{value}]" if isinstance(value, (int, float)) else "write values: [6.5, 6.6, 6.7]"
     if path.startswith("sweep."):
-        return _axis(key, given)
+        return _axis(key, value)
     if path.startswith("continue.parameter."):
-        ends = list(given.values()) if isinstance(given, Mapping) else []
+        ends = list(value.values()) if isinstance(value, Mapping) else []
         return f"write {key}: [{', '.join(map(str, ends)) if len(ends) == 2 else '3.0, 4.5'}]"
     if path == "section":
-        return f"write section: {{kind: {given if given in ('phase', 'impact') else 'phase'}}}"
+        return f"write section: {{kind: {value if value in ('phase', 'impact') else 'phase'}}}"
     if path == "orbit":
         return "write orbit: {transient: 1000, record: 200}"
     return "write trajectory: {periods: 4, samples: 400}" if path == "trajectory" else None
 
 
-def _is_increasing_pair(given: list) -> bool:
-    return len(given) == 2 and all(number_of(one) is not None for one in given) and given[0] < given[1]
+def _is_increasing_pair(value: list) -> bool:
+    return len(value) == 2 and all(number_of(number) is not None for number in value) and value[0] < value[1]
 
 
-def of_list(path: str, given: object) -> str | None:
+def of_list(path: str, value: object) -> str | None:
     """The hint for a list where a number of `system` belongs, or a number where a list does; None for another value."""
     place, _, key = path.partition(".")
     if place != "system":
         return None
-    if key in MATRICES and number_of(given) is not None:
-        return f"write {key}: [[{given}]], a list of lists"
-    if key == "omega" and isinstance(given, list):
+    if key in MATRICES and number_of(value) is not None:
+        return f"write {key}: [[{value}]], a list of lists"
+    if key == "omega" and isinstance(value, list):
         return "the force has one frequency; values that vary stand in sweep"
-    if key.startswith("contact_normal[") and isinstance(given, list):
+    if key.startswith("contact_normal[") and isinstance(value, list):
         return "there is one contact, whose contact_normal is a list of numbers; several are not computed"
-    if key == "stop_at" and isinstance(given, list):
+    if key == "stop_at" and isinstance(value, list):
         return "a contact between two masses has the type linear, with contact_normal: [..., -1, 1, ...]"
     return None
 
 
-def _start(given: object) -> str:
-    if isinstance(given, list) and len(given) == 4:
-        state = dict(zip(("x1", "v1", "x2", "v2"), given, strict=True))
+def _start(value: object) -> str:
+    if isinstance(value, list) and len(value) == 4:
+        state = dict(zip(("x1", "v1", "x2", "v2"), value, strict=True))
         return f"write start: {{{', '.join(f'{name}: {value}' for name, value in state.items())}}}"
-    if isinstance(given, str) and given.lower() in ("rest", "zero", "origin", "0"):
+    if isinstance(value, str) and value.lower() in ("rest", "zero", "origin", "0"):
         return "write start: {x1: 0, v1: 0, x2: 0, v2: 0}, or leave it out, which is the same"
     forms = {"random": "{random: 16, seed: 1}", "follow": "{follow: up}"}
     return (
-        f"write start: {forms.get(str(given), '{x1: 0, v1: 0, x2: 0, v2: 0}, {random: 16, seed: 1} or {follow: up}')}"
+        f"write start: {forms.get(str(value), '{x1: 0, v1: 0, x2: 0, v2: 0}, {random: 16, seed: 1} or {follow: up}')}"
     )
 
 
-def _axis(key: str, given: object) -> str | None:
-    if isinstance(given, list) and given and all(isinstance(value, (int, float)) for value in given):
-        whole = f"{{values: [{', '.join(map(str, given))}]}}" if len(given) < 7 else "{values: [...]}"
-        if len(given) == 3 and _is_number_of_values(*given):
-            return f"write {key}: {{start: {given[0]}, stop: {given[1]}, num: {given[2]}}}; three values are {whole}"
-        between = f", or {{start: {given[0]}, stop: {given[1]}, num: 101}}" if len(given) == 2 else ""
+def _axis(key: str, value: object) -> str | None:
+    if isinstance(value, list) and value and all(isinstance(entry, (int, float)) for entry in value):
+        whole = f"{{values: [{', '.join(map(str, value))}]}}" if len(value) < 7 else "{values: [...]}"
+        if len(value) == 3 and _is_number_of_values(*value):
+            return f"write {key}: {{start: {value[0]}, stop: {value[1]}, num: {value[2]}}}; three values are {whole}"
+        between = f", or {{start: {value[0]}, stop: {value[1]}, num: 101}}" if len(value) == 2 else ""
         return f"write {key}: {whole}{between}"
-    if isinstance(given, (int, float)) and not isinstance(given, bool):
+    if isinstance(value, (int, float)) and not isinstance(value, bool):
         return f"a number that does not vary stands in system; else write {key}: {AXIS}"
     return f"write {key}: {AXIS}"
 
@@ -154,21 +154,21 @@ def of_physical(key: str, system: object) -> str | None:
 HERTZ = ("f", "freq", "frequency", "hz")
 
 
-def of_frequency(key: str, given: object) -> str | None:
+def of_frequency(key: str, value: object) -> str | None:
     """The hint for a frequency among physical quantities; None for another key."""
-    hertz = number_of(given) if key.lower() in HERTZ else None
+    hertz = number_of(value) if key.lower() in HERTZ else None
     if hertz is None:
         return None
     return f"if it is in Hz write Omega: {2 * math.pi * hertz:.10g}, which is 2 pi times as much"
 
 
-def of_swept_frequency(key: str, given: object, system: object) -> str | None:
+def of_swept_frequency(key: str, value: object, system: object) -> str | None:
     """The hint for a sweep in Hz of a system in physical units; None for another key or system."""
     unit = _radian_per_second(system) if isinstance(system, Mapping) and key.lower() in HERTZ else None
     if not unit:
         return None
     counted = "in rad/s" if unit == 1 else f"here in units of {1 / unit:.6g} rad/s"
-    first = number_of(given.get("start")) if isinstance(given, Mapping) else None
+    first = number_of(value.get("start")) if isinstance(value, Mapping) else None
     hertz = 20.0 if first is None or not math.isfinite(first) else first
     return f"omega is swept, {counted}: {hertz:g} Hz is omega = {2 * math.pi * unit * hertz:.6g}"
 
@@ -196,10 +196,10 @@ def of_damping(key: str, keys: Iterable[str]) -> str | None:
     return "a damper is c = 2 zeta sqrt(k m); the type linear has modal_damping, a ratio for each mode"
 
 
-def has_words(given: object) -> bool:
+def has_words(value: object) -> bool:
     """Whether the values of a sweep are no numbers."""
-    values = given.get("values") if isinstance(given, Mapping) else given
-    return isinstance(values, list) and any(isinstance(one, str) and not number_in_text(one) for one in values)
+    values = value.get("values") if isinstance(value, Mapping) else value
+    return isinstance(values, list) and any(isinstance(entry, str) and not number_in_text(entry) for entry in values)
 
 
 def _scales(numbers: Mapping[str, Any]) -> dict[str, tuple[str, str, float]]:

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from vibro_sweep.oscillator.built import Built
+from vibro_sweep.oscillator.function_model import FunctionModel
 from vibro_sweep.oscillator.oscillator import Oscillator
 from vibro_sweep.tables.coordinates import START, state
 
@@ -73,10 +73,10 @@ def start_problems(form: Form, sweep, system: Oscillator | None, masses: int) ->
         nowhere = system.numbers.get("b", 1.0) == 0 or 0 in sweep.get("b", [])
         text = "random states lie within the clearance b, which is 0 here; give a state"
         return [problem("start.random", form.start.random, text)] if nowhere else []
-    if isinstance(system, Built):
+    if isinstance(system, FunctionModel):
         return []  # where its stops are is known point by point; states behind one begin at it
-    given = [name for name in names if name in swept or name in form.start.model_fields_set]
-    return _behind(form, sweep, system, names, swept) if given else []
+    named = [name for name in names if name in swept or name in form.start.model_fields_set]
+    return _behind(form, sweep, system, names, swept) if named else []
 
 
 def _behind(form: Form, sweep, system: Oscillator, names, swept) -> list[str]:
@@ -104,7 +104,7 @@ def _behind(form: Form, sweep, system: Oscillator, names, swept) -> list[str]:
 
 def stops_of(system: Oscillator, sweep) -> tuple[float, float]:
     """The narrowest positions of the stops in a sweep, infinite where there is none."""
-    if isinstance(system, Built):
+    if isinstance(system, FunctionModel):
         return system.linear.low, system.linear.high
     b, offset = (sweep.get(name, [system.numbers.get(name, 0.0)]) for name in ("b", "offset"))
     stops = system.options.get("stops", "both")

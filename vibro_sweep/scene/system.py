@@ -4,8 +4,8 @@ import numpy as np
 
 from vibro_sweep.checks.meant import did_you_mean
 from vibro_sweep.checks.refusals import ParameterError
-from vibro_sweep.oscillator.built import Built
 from vibro_sweep.oscillator.checked_numbers import check_value
+from vibro_sweep.oscillator.function_model import FunctionModel
 from vibro_sweep.oscillator.models import DEFAULT, MODELS
 from vibro_sweep.oscillator.models.declaration import OF_STOPS, entries
 from vibro_sweep.oscillator.oscillator import Oscillator, System
@@ -59,7 +59,7 @@ def _number_problems(path: str, number: Parameter, value, stops: str) -> list[st
 
 def system_of(form: Form, sweep, kind: str, masses: int) -> tuple[Oscillator | None, list[str]]:
     """The base system with the first swept values in it, or None and what is wrong."""
-    if isinstance(form.system, Built):
+    if isinstance(form.system, FunctionModel):
         return form.system, []
     model = MODELS[kind]
     numbers = model.flat(masses)
@@ -67,7 +67,7 @@ def system_of(form: Form, sweep, kind: str, masses: int) -> tuple[Oscillator | N
     if isinstance(form.system, PhysicalSystemForm):
         physical = form.system.physical.model_dump()
         try:
-            options = {one.name: getattr(form.system, one.name) for one in OF_STOPS}
+            options = {number.name: getattr(form.system, number.name) for number in OF_STOPS}
             system = System.physical(**physical, tau=form.system.tau, stops=form.system.stops, **options)
             return system.replace(**first), []
         except ParameterError as error:
@@ -77,28 +77,29 @@ def system_of(form: Form, sweep, kind: str, masses: int) -> tuple[Oscillator | N
         return _with_numbers(form.system, first)
     axes = getattr(form, "sweep", None)  # scenes of branches have none
     swept = axes.model_fields_set.intersection(numbers) if axes else set()
-    problems, given = [], {}
+    problems, arguments = [], {}
     stops = getattr(form.system, "stops", "both")
-    for one in model.numbers:
-        value = getattr(form.system, one.name)
-        if value is None and one.each:
-            text = f"is one of {one.name}, which is not given; write it in system, one number for each {one.each}"
+    for number in model.numbers:
+        value = getattr(form.system, number.name)
+        if value is None and number.each:
+            text = f"is one of {number.name}, which is not given; write it in system, one number for each {number.each}"
             problems += [
-                f"sweep.{key}: {text}" for key in sorted(swept.intersection(each.name for each in entries(one, masses)))
+                f"sweep.{key}: {text}"
+                for key in sorted(swept.intersection(each.name for each in entries(number, masses)))
             ]
-        if value is None and one.name not in first and not one.each and not one.optional:
-            if one.name not in swept:
-                problems.append(f"system.{one.name}: missing; it must be given unless it is swept")
-        elif value is not None and not one.each and not isinstance(value, str):
-            problems += _number_problems("system", one, value, stops)
+        if value is None and number.name not in first and not number.each and not number.optional:
+            if number.name not in swept:
+                problems.append(f"system.{number.name}: missing; it must be given unless it is swept")
+        elif value is not None and not number.each and not isinstance(value, str):
+            problems += _number_problems("system", number, value, stops)
         if value is not None:
-            given[one.name] = value
+            arguments[number.name] = value
     if problems or not swept <= first.keys():
         return None, problems
-    given |= {name: value for name, value in first.items() if name in (one.name for one in model.numbers)}
-    given |= {one.name: getattr(form.system, one.name) for one in model.options}
+    arguments |= {name: value for name, value in first.items() if name in (number.name for number in model.numbers)}
+    arguments |= {number.name: getattr(form.system, number.name) for number in model.options}
     try:
-        system = Oscillator.named(kind, **given)
+        system = Oscillator.named(kind, **arguments)
     except ParameterError as error:
         path = "sweep" if error.key in first else "system"
         return None, [problem(f"{path}.{error.key}", error.value, f"must be {error.allowed}")]

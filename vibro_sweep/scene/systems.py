@@ -12,11 +12,11 @@ from vibro_sweep.oscillator.physical import PHYSICAL
 from vibro_sweep.tables.parameters import PHASE
 from vibro_sweep.tables.quantity import POSITIVE, Parameter
 
-from .fields import TAU, WHICH, Form, Whole, given, number
+from .fields import TAU, WHICH, Form, Whole, described_field, number
 
 
-def _required(one: Parameter) -> tuple[Any, Any]:
-    return float, given(one.text, **one.range.bounds)
+def _required(quantity: Parameter) -> tuple[Any, Any]:
+    return float, described_field(quantity.text, **quantity.range.bounds)
 
 
 _UNITS: JsonDict = {
@@ -27,18 +27,18 @@ _UNITS: JsonDict = {
 }
 
 
-def _option(one: Option) -> tuple[Any, Any]:
-    if one.kind == "units":
-        return Any, Field(default=None, description=one.text, json_schema_extra=_UNITS)
+def _option(quantity: Option) -> tuple[Any, Any]:
+    if quantity.kind == "units":
+        return Any, Field(default=None, description=quantity.text, json_schema_extra=_UNITS)
     kind = {
-        "word": Literal[one.words] if one.words else str,
+        "word": Literal[quantity.words] if quantity.words else str,
         "flag": bool,
         "whole": Whole,
         "matrix": list[list[float]],
         "vector": list[float],
-    }[one.kind]
-    required = one.default is None and not one.optional
-    return kind, Field(default=... if required else one.default, description=one.text)
+    }[quantity.kind]
+    required = quantity.default is None and not quantity.optional
+    return kind, Field(default=... if required else quantity.default, description=quantity.text)
 
 
 PhysicalNumbers = create_model(
@@ -47,7 +47,10 @@ PhysicalNumbers = create_model(
     __doc__="Physical quantities in SI units: kg, m, s and N. "
     "All but B0 and the numbers of the stops must be given, and of these R or k_stop; a sweep over `omega`, `b`, "
     "`offset` or `R` replaces the value that follows from `Omega`, `B`, `B0` or `R`.",
-    **{one.name: number(one) if one.optional or one.default is not None else _required(one) for one in PHYSICAL},
+    **{
+        quantity.name: number(quantity) if quantity.optional or quantity.default is not None else _required(quantity)
+        for quantity in PHYSICAL
+    },
 )
 
 PhysicalSystemForm = create_model(
@@ -57,7 +60,7 @@ PhysicalSystemForm = create_model(
     physical=(PhysicalNumbers, Field(description="the quantities")),
     tau=TAU,
     stops=WHICH,
-    **{one.name: _option(one) for one in OF_STOPS},
+    **{quantity.name: _option(quantity) for quantity in OF_STOPS},
 )
 
 
@@ -84,17 +87,17 @@ def form_of(name: str) -> type[Form]:
         __doc__="The impact oscillator in nondimensional numbers; a number that is swept may be left out."
         if default
         else f"The model {model.name}: {model.title}. A number that is swept may be left out.",
-        **{one.name: _number(one) for one in model.numbers},
-        **{one.name: _option(one) for one in model.options},
+        **{quantity.name: _number(quantity) for quantity in model.numbers},
+        **{quantity.name: _option(quantity) for quantity in model.options},
         type=kind,
     )
 
 
-def _number(one: Parameter) -> tuple[Any, Any]:
-    if one.name == PHASE.name:
+def _number(quantity: Parameter) -> tuple[Any, Any]:
+    if quantity.name == PHASE.name:
         return TAU
-    if not one.each:
-        return number(one)
-    of_each = {"items": {"type": "number"} | one.range.bounds} if one.range.bounds else {}
-    text = f"{one.text}; a list, one for each {one.each}" + ("; left out: 0" if one.default == 0 else "")
+    if not quantity.each:
+        return number(quantity)
+    of_each = {"items": {"type": "number"} | quantity.range.bounds} if quantity.range.bounds else {}
+    text = f"{quantity.text}; a list, one for each {quantity.each}" + ("; left out: 0" if quantity.default == 0 else "")
     return list[float], Field(default=None, description=text, json_schema_extra=of_each)

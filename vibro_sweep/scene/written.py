@@ -9,14 +9,14 @@ from typing import Any
 import numpy as np
 
 from vibro_sweep.checks.refusals import shown
-from vibro_sweep.oscillator.built import Built
+from vibro_sweep.oscillator.function_model import FunctionModel
 from vibro_sweep.oscillator.models import DEFAULT
 from vibro_sweep.oscillator.oscillator import Oscillator, checked_system
 from vibro_sweep.tables.coordinates import START, start, state
 from vibro_sweep.tables.observables import WORDS
 
 from .axes import axis_values
-from .data import Foreign, data_from
+from .data import InvalidValue, data_from
 from .form import CountAxis
 from .starts import Start
 
@@ -55,8 +55,10 @@ def as_data(key: str, value):
             for name, axis in value.items()
         }
     if key == "observe":
-        found = data_from(list(islice(value, len(WORDS) + 1)) if isinstance(value, (Iterator, Set)) else value)
-        return found[: len(WORDS) + 1] if isinstance(found, list) else found  # of more some are there twice
+        plain_data = data_from(list(islice(value, len(WORDS) + 1)) if isinstance(value, (Iterator, Set)) else value)
+        return (
+            plain_data[: len(WORDS) + 1] if isinstance(plain_data, list) else plain_data
+        )  # of more some are there twice
     if key == "start" and not isinstance(value, (str, Mapping)):
         values = data_from(value)
         if not isinstance(values, list) or len(values) % 2 or len(values) > len(START):
@@ -72,23 +74,29 @@ def axis_data(axis: object) -> object:
     data = data_from(axis)
     data = {"values": data} if isinstance(data, list) else data
     values = data.get("values") if isinstance(data, dict) else None
-    if isinstance(values, list) and len(values) > MANY and any(type(one) not in (int, float) for one in values):
-        data["values"] = Foreign(values)  # it is refused as a whole
+    if (
+        isinstance(values, list)
+        and len(values) > MANY
+        and any(type(quantity) not in (int, float) for quantity in values)
+    ):
+        data["values"] = InvalidValue(values)  # it is refused as a whole
     return data
 
 
 def system_data(system: Oscillator, swept) -> dict[str, Any]:
     """Numbers and options that are not what they are if they are left out; those of lists that are swept stay."""
-    if isinstance(system, Built):
+    if isinstance(system, FunctionModel):
         return dict(system.options)
     checked_system(system)
     kind = {} if system.model.name == DEFAULT else {"type": system.model.name}
-    given = {one.name: getattr(system, one.name) for one in system.model.numbers if one.name not in swept}
-    left_out = {one.name: one.default for one in system.model.numbers if one.default is not None}
+    entries = {
+        quantity.name: getattr(system, quantity.name) for quantity in system.model.numbers if quantity.name not in swept
+    }
+    left_out = {quantity.name: quantity.default for quantity in system.model.numbers if quantity.default is not None}
     left_out["tau"] = None  # always written
     numbers = {
         name: data_from(value)
-        for name, value in given.items()
+        for name, value in entries.items()
         if value is not None and not np.array_equal(value, left_out.get(name)) and np.any(value != left_out.get(name))
     }
     return kind | numbers | {name: data_from(value) for name, value in system.options.items() if value is not None}
@@ -98,18 +106,18 @@ def progression(values: np.ndarray) -> dict[str, Any]:
     """The axis as data, by its ends where these give the same values, bit for bit."""
     if len(values) >= SHORTEST_PROGRESSION:
         ends = {"start": float(values[0]), "stop": float(values[-1]), "num": len(values)}
-        found, _ = axis_values("", CountAxis(**ends))
-        if found is not None and np.array_equal(found, values):
+        plain_data, _ = axis_values("", CountAxis(**ends))
+        if plain_data is not None and np.array_equal(plain_data, values):
             return ends
     return {"values": values.tolist()}
 
 
-def start_data(given: Start, swept, masses: int) -> dict[str, Any]:
-    if given.kind == "random":
-        return {"random": given.count, "seed": given.seed}
-    named = zip(state(masses), start(masses), given.state, strict=True)
+def start_data(entries: Start, swept, masses: int) -> dict[str, Any]:
+    if entries.kind == "random":
+        return {"random": entries.count, "seed": entries.seed}
+    named = zip(state(masses), start(masses), entries.state, strict=True)
     values = {name: value for name, dimension, value in named if value and dimension not in swept}
-    return ({"follow": given.direction} if given.kind == "follow" else {}) | values
+    return ({"follow": entries.direction} if entries.kind == "follow" else {}) | values
 
 
 def _flow(value) -> str:

@@ -52,11 +52,11 @@ def _hint(error: MarkedYAMLError, lines: list[str]) -> str:
     if "\\t" in (error.problem or ""):
         return "; lines are indented with spaces, not with tabs"
     for number, line in enumerate(lines, 1):
-        if found := re.match(r"\s*(\w+)(:)([^\s:/].*)", line):
-            return f"; line {number} needs a space after the colon: `{found[1]}: {found[3]}`"
+        if match := re.match(r"\s*(\w+)(:)([^\s:/].*)", line):
+            return f"; line {number} needs a space after the colon: `{match[1]}: {match[3]}`"
     if error.context == "while parsing a flow mapping" or error.context == "while parsing a flow sequence":
-        begun = error.context_mark.line + 1
-        return f"; a comma is missing, or the bracket that begins in line {begun} is not closed"
+        first_line = error.context_mark.line + 1
+        return f"; a comma is missing, or the bracket that begins in line {first_line} is not closed"
     if error.problem == "mapping values are not allowed here":
         return "; the line is indented more than the one above it, or has a colon too many"
     return ""

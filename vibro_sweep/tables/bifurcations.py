@@ -72,17 +72,17 @@ TYPES = (
                 advice="Beyond it the motion is linear, with the stop as one more spring and damper: "
                        "`simulate` and `sweep` compute it."),
 )  # fmt: skip
-BY_NAME = {one.name: one for one in TYPES}
-CODES = {one.name: code for code, one in enumerate(TYPES)}
-CURVES = tuple(one.name for one in TYPES if one.condition not in ("", "stick"))  # those of which files hold curves
-ON_CIRCLE = tuple(one.name for one in TYPES if any(one.crosses))  # with a multiplier of modulus 1
-BIRTHS = tuple(one.name for one in TYPES if one.condition == "flip")  # of a doubled or an asymmetric orbit
-WAYS = tuple(one.name for one in reversed(TYPES) if one.beyond)  # from which branches are followed
+BY_NAME = {row.name: row for row in TYPES}
+CODES = {row.name: code for code, row in enumerate(TYPES)}
+CURVES = tuple(row.name for row in TYPES if row.condition not in ("", "stick"))  # those of which files hold curves
+ON_CIRCLE = tuple(row.name for row in TYPES if any(row.crosses))  # with a multiplier of modulus 1
+BIRTHS = tuple(row.name for row in TYPES if row.condition == "flip")  # of a doubled or an asymmetric orbit
+WAYS = tuple(row.name for row in reversed(TYPES) if row.beyond)  # from which branches are followed
 
 
 def name_of(condition: str, sigma: int) -> str:
     """The type that a condition is, of orbits with this sigma; "" where there is none."""
-    return next((one.name for one in TYPES if one.condition == condition and one.sigma in (0, sigma)), "")
+    return next((row.name for row in TYPES if row.condition == condition and row.sigma in (0, sigma)), "")
 
 
 class Point(NamedTuple):
@@ -141,7 +141,7 @@ CODIMENSION_TWO = (
     Point("split", "", "within a contact the mass comes back to its stop: two contacts become one"),
     Point("unrelaxed", "", "with `release: force` a stop is touched before it has relaxed: no bifurcation"),
 )  # fmt: skip
-CODES_OF_CURVES = {one.name: code for code, one in enumerate(CODIMENSION_TWO)}
+CODES_OF_CURVES = {row.name: code for code, row in enumerate(CODIMENSION_TWO)}
 
 GRAZES = {  # kinds of them, and what happens
     "persistence": "beyond it the motion has one impact more or less",

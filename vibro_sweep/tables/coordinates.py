@@ -32,7 +32,7 @@ def coordinates(masses: int) -> tuple[Quantity, ...]:
 @functools.cache
 def state(masses: int) -> tuple[str, ...]:
     """Names of the coordinates."""
-    return tuple(one.name for one in coordinates(masses))
+    return tuple(coordinate.name for coordinate in coordinates(masses))
 
 
 @functools.cache
@@ -44,15 +44,21 @@ def start(masses: int) -> tuple[str, ...]:
 # A sweep over x1 has the dimension start_x1, since x1 are section points.
 START = {name: f"start_{name}" for name in state(MOST_MASSES)}
 INITIAL = tuple(
-    Parameter(START[one.name], f"initial {one.label.split()[0]}", f"{one.text} at t = 0", f"{one.symbol}(0)", one.units)
-    for one in coordinates(MOST_MASSES)
+    Parameter(
+        START[coordinate.name],
+        f"initial {coordinate.label.split()[0]}",
+        f"{coordinate.text} at t = 0",
+        f"{coordinate.symbol}(0)",
+        coordinate.units,
+    )
+    for coordinate in coordinates(MOST_MASSES)
 )
 
 
-def checked_state(given, masses: int = 2, name: str = "state") -> np.ndarray:
+def checked_state(value, masses: int = 2, name: str = "state") -> np.ndarray:
     """A state (x1, v1, x2, v2, ...) as an array (2 N,). Raises ValueError unless it is so many finite numbers."""
-    values, names = array_of(given, 1), state(masses)
+    values, names = array_of(value, 1), state(masses)
     if values is None or values.shape != (len(names),) or not np.isfinite(values).all():
         count = _COUNTS.get(len(names), str(len(names)))
-        raise ArgumentError(not_allowed(name, given, f"{count} finite numbers ({', '.join(names)})"))
+        raise ArgumentError(not_allowed(name, value, f"{count} finite numbers ({', '.join(names)})"))
     return values

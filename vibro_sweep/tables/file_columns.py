@@ -62,7 +62,7 @@ OF_BRANCHES = (
     _column("impact", "f8", "impact_t_off", "end of the rest",
             "time at which the rest after an impact ends; NaN where the mass does not rest", "s"),
     _column("special", "i1", "special_type", "type", "type of the special point",
-            flags=tuple(one.name for one in TYPES)),
+            flags=tuple(row.name for row in TYPES)),
     _column("special parameter", "f8", "special_value", "parameters",
             "values of the attribute `parameters` at the special point", OF_PARAMETER),
     _column("special", "i4", "special_branch", "branch",
@@ -97,14 +97,14 @@ OF_CURVES = (  # branches are curves here, along which an orbit bifurcates
     _column("branch", "i1", "branch_type", "type", "type of the bifurcation along the curve", flags=CURVES),
     _column("branch", "i4", "branch_grazing", "grazing impact",
             "index of the impact without speed along a graze curve; of a symmetric orbit, of its first half"),
-    *(one for one in OF_BRANCHES if one.name in _SHARED),
+    *(row for row in OF_BRANCHES if row.name in _SHARED),
     _column("point", "i4", "unstable", "unstable multipliers",
             "number of multipliers outside the unit circle, without the critical ones; 0 where the curve bounds "
             "attractors"),
     _column("point", "f8", "b_star", "grazing clearance",
             "clearance b at which the free motion grazes both stops; NaN where there is none", "m"),
     _column("special", "i1", "special_type", "type", "type of the point of codimension two",
-            flags=tuple(one.name for one in CODIMENSION_TWO)),
+            flags=tuple(row.name for row in CODIMENSION_TWO)),
     _column("special", "i1", "special_touches", "touches",
             "whether a flight touches a stop at the special point", flags=_NO_YES),
 )  # fmt: skip
@@ -163,20 +163,20 @@ RAGGED = {  # dimension -> (counts of each branch, what each of them counts for)
 
 def columns(kind: str, parameters: list[str], masses: int) -> list[Quantity]:
     """All variables of a file; parameters : the names of numbers along which branches lead."""
-    own = [_column("point", "f8", name, name, f"value of the parameter {name}") for name in parameters]
-    own += _states("point", "", "at t = 0, before an impact there", masses)
+    result = [_column("point", "f8", name, name, f"value of the parameter {name}") for name in parameters]
+    result += _states("point", "", "at t = 0, before an impact there", masses)
     if kind == CHART:
-        return [*own, *OF_CURVES]
+        return [*result, *OF_CURVES]
     if kind == WINDOWS:
         text = "at t = 0 mod T, of a start that stays on the window's orbit at `unvisited_at`; NaN where none is known"
         starts = _states("unvisited", "unvisited_", text, masses)
-        return [*own, *OF_BRANCHES, *OF_WINDOWS, *UNVISITED.values(), *starts]
-    return [*own, *OF_BRANCHES, BRANCH_SECTIONS, *_states("section", "section_", "at t = 0 mod T", masses)]
+        return [*result, *OF_BRANCHES, *OF_WINDOWS, *UNVISITED.values(), *starts]
+    return [*result, *OF_BRANCHES, BRANCH_SECTIONS, *_states("section", "section_", "at t = 0 mod T", masses)]
 
 
 def _states(dimension: str, prefix: str, text: str, masses: int) -> list[Quantity]:
     """A state for each row, coordinate by coordinate."""
     return [
-        _column(dimension, "f8", f"{prefix}{one.name}", one.name, f"value of {one.name} {text}", one.units)
-        for one in coordinates(masses)
+        _column(dimension, "f8", f"{prefix}{row.name}", row.name, f"value of {row.name} {text}", row.units)
+        for row in coordinates(masses)
     ]

@@ -108,10 +108,7 @@ def variables(masses: int, gap: bool = False) -> tuple[Observable, ...]:
 
     gap : whether the gap is something else than x1
     """
-    of_masses = (
-        _section(one.name, one.label, f"{one.text} at the section", one.symbol, one.units)
-        for one in coordinates(masses)
-    )
+    of_masses = (_section(x.name, x.label, f"{x.text} at the section", x.symbol, x.units) for x in coordinates(masses))
     of_gap = [_section(GAP, "gap g", "gap at the section", "g", "m")] if gap else []
     return (*of_masses, *of_gap, *_OF_ANY, *_energies(masses), *_trajectories(masses, gap), _STATUS)
 
@@ -125,10 +122,10 @@ def _energies(masses: int) -> tuple[Observable, ...]:
             "energy lost in impacts, and the work of the masses on compliant stops, in the recorded periods, per unit "
             f"time; {too_long}", units="W"),
         *(
-            _energy(f"{size}_{one.name}", f"{label} {one.name}",
-                f"{text.format(one.text)} in the recorded periods; {too_long}", units=one.units)
+            _energy(f"{size}_{x.name}", f"{label} {x.name}",
+                f"{text.format(x.text)} in the recorded periods; {too_long}", units=x.units)
             for size, label, text in sizes
-            for one in coordinates(masses)
+            for x in coordinates(masses)
         ),
     )  # fmt: skip
 
@@ -147,11 +144,11 @@ def _trajectories(masses: int, gap: bool) -> tuple[Observable, ...]:
     return (
         *(
             row
-            for one in coordinates(masses)
+            for x in coordinates(masses)
             for row in (
-                _trajectory(one.name, one.label, f"{one.text} along the orbit", "t_over_T", units=one.units),
-                _trajectory(f"section_{one.name}", one.label,
-                    f"{one.text} at the section t = 0 mod T along the orbit", "trajectory_section", units=one.units),
+                _trajectory(x.name, x.label, f"{x.text} along the orbit", "t_over_T", units=x.units),
+                _trajectory(f"section_{x.name}", x.label,
+                    f"{x.text} at the section t = 0 mod T along the orbit", "trajectory_section", units=x.units),
             )
         ),
         _trajectory("impacts", "impacts", "number of impacts along the orbit; of too many the fastest are stored",
@@ -165,9 +162,9 @@ def _trajectories(masses: int, gap: bool) -> tuple[Observable, ...]:
         _trajectory(f"impact_{name}_after", f"{label} after impact", f"velocity {of} after an impact", at_impact,
             units="m s-1"),
         *(
-            _trajectory(f"impact_{one.name}", f"{one.label} at impact", f"{one.text} at an impact", at_impact,
-                units=one.units)
-            for one in known
+            _trajectory(f"impact_{x.name}", f"{x.label} at impact", f"{x.text} at an impact", at_impact,
+                units=x.units)
+            for x in known
         ),
     )  # fmt: skip
 
@@ -178,12 +175,14 @@ def jumping(gap: bool) -> str:
 
 
 VARIABLES = variables(2)  # of the paper's oscillator
-OF_AN_ORBIT = tuple(one for one in VARIABLES if one.in_kernel)  # whatever the number of masses
+OF_AN_ORBIT = tuple(observable for observable in VARIABLES if observable.in_kernel)  # whatever the number of masses
 
 
 def of_an_impact(masses: int, gap: bool = False) -> tuple[str, ...]:
     """The numbers that are stored of an impact along a trajectory, in the order in which kernels keep it."""
-    return tuple(one.name for one in variables(masses, gap) if one.dimensions == ("trajectory_impact",))
+    return tuple(
+        observable.name for observable in variables(masses, gap) if observable.dimensions == ("trajectory_impact",)
+    )
 
 
 def asked_for(keys: frozenset[str], at_impacts: bool, masses: int = 2, gap: bool = False) -> dict[str, Observable]:
@@ -193,9 +192,10 @@ def asked_for(keys: frozenset[str], at_impacts: bool, masses: int = 2, gap: bool
     at_impacts : whether the section is at impacts
     """
     return {
-        one.name: one
-        for one in variables(masses, gap)
-        if (not one.asked_by or keys.intersection(one.asked_by)) and (at_impacts or not one.at_impacts)
+        observable.name: observable
+        for observable in variables(masses, gap)
+        if (not observable.asked_by or keys.intersection(observable.asked_by))
+        and (at_impacts or not observable.at_impacts)
     }
 
 
@@ -220,7 +220,7 @@ def dimensions(masses: int) -> dict[str, Quantity]:
         Quantity("trajectory_section", "time t/T", "forcing periods since the last section point"),
         Quantity("trajectory_impact", "impact", "impact along the orbit, counted from the last section point"),
     )  # fmt: skip
-    return {one.name: one for one in rows}
+    return {row.name: row for row in rows}
 
 
 DIMENSIONS = dimensions(2)  # of the paper's oscillator

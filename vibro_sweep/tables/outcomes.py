@@ -49,8 +49,8 @@ VALID = (OK, NOT_SETTLED)  # of points whose numbers are valid; `not_settled` is
 
 def status_of(code: int) -> Outcome:
     """The status of a point by its code; a file that somebody has changed may hold other codes."""
-    place = int(code) - NOT_COMPUTED
-    return STATUSES[place] if 0 <= place < len(STATUSES) else Outcome(f"unknown_status_{code}", "")
+    index = int(code) - NOT_COMPUTED
+    return STATUSES[index] if 0 <= index < len(STATUSES) else Outcome(f"unknown_status_{code}", "")
 
 
 def is_valid(codes):
@@ -150,12 +150,12 @@ EDGES = (  # of a plane between points of different periods: why; what says most
 
 def names(outcomes: Sequence[Outcome]) -> tuple[str, ...]:
     """Their names, in the order of their codes."""
-    return tuple(one.name for one in outcomes)
+    return tuple(outcome.name for outcome in outcomes)
 
 
 def codes(outcomes: Sequence[Outcome]) -> dict[str, int]:
     """Their codes by name."""
-    return {one.name: code for code, one in enumerate(outcomes)}
+    return {outcome.name: code for code, outcome in enumerate(outcomes)}
 
 
 def named(outcomes: Sequence[Outcome], name: str) -> Outcome:

@@ -30,4 +30,6 @@ B_RIGHT, B_LEFT = (
     )
     for side in ("right", "left")
 )  # fmt: skip
-FOLLOWING = tuple(one.name for one in (PHASE, B_STAR, B_RIGHT, B_LEFT))  # these may follow from swept numbers
+FOLLOWING = tuple(
+    parameter.name for parameter in (PHASE, B_STAR, B_RIGHT, B_LEFT)
+)  # these may follow from swept numbers

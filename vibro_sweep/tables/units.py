@@ -54,7 +54,7 @@ def unit_in(declared: str, units: Units | None) -> str:
     if units is None:
         return NONE
     try:
-        factor = float(math.prod(Fraction(getattr(units, one)) ** powers[one] for one in _BASE))
+        factor = float(math.prod(Fraction(getattr(units, base_unit)) ** powers[base_unit] for base_unit in _BASE))
     except OverflowError:
         return NONE
     if factor == 0:
@@ -70,12 +70,12 @@ def power_of_seconds(unit: str) -> int:
 
 def _powers(unit: str) -> Counter:
     """The powers of kg, m and s; of rad, and of 1, which are zero."""
-    found: Counter = Counter()
+    powers_found: Counter = Counter()
     for word in unit.split():
         name, power = re.fullmatch(r"(\D+?|1)(-?\d*)", word).groups()
         for base, times in _OF.get(name, {name: 1}).items():
-            found[base] += times * int(power or 1)
-    return found
+            powers_found[base] += times * int(power or 1)
+    return powers_found
 
 
 def shown_unit(unit: str | None) -> str:

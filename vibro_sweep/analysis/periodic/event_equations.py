@@ -17,7 +17,7 @@ from vibro_sweep.engine.impulses.extremes import middle_weights
 from vibro_sweep.engine.impulses.flow import closing, contact_coordinates, flow, unseen_modes
 from vibro_sweep.engine.impulses.free_modes import checked_cells
 from vibro_sweep.engine.impulses.taylor_orders import ORDER
-from vibro_sweep.oscillator.linear import MOTION, Linear, amplitudes, remembered
+from vibro_sweep.oscillator.linear import MOTION, Linear, amplitudes, memoised
 
 
 class EventEquations:
@@ -112,7 +112,7 @@ def _contact_of(q: Linear) -> list[float]:
     return [q.low, q.high, 1 + q.R_low, 1 + q.R_high, 1.0]
 
 
-@remembered(*MOTION)
+@memoised(*MOTION)
 def _tables(q: Linear, sigma: int, half_periods: int, rests: bool, compliant: bool) -> np.ndarray:
     """(1,) `plane_of` of an oscillator, without its contact; `closing` without rests."""
     checked_cells(q, half_periods)

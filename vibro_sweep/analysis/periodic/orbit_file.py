@@ -35,7 +35,7 @@ def save_orbit(orbit: PeriodicOrbit, path) -> Path:
         raise ArgumentError("an orbit of a Family cannot be saved: its function is not a text")
     record = {
         "format": FORMAT,
-        "system": {"type": system.model.name, **system.given},
+        "system": {"type": system.model.name, **system.arguments},
         "sigma": s.sigma,
         "halves": s.half_periods,
         "sides": [int(side) for side in s.sides],

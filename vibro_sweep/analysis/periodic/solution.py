@@ -18,7 +18,7 @@ from vibro_sweep.analysis.periodic.resting_orbit import RestingOrbit
 from vibro_sweep.analysis.periodic.steady_gap import steady_gap
 from vibro_sweep.engine.impulses.flow import flow
 from vibro_sweep.engine.impulses.free_modes import has_free_gap
-from vibro_sweep.oscillator.linear import MOTION, Family, Keyed, forcing_period
+from vibro_sweep.oscillator.linear import MOTION, Family, KeyOfFields, forcing_period
 
 # Relative difference below which two halves (periods) of an orbit are the same. An orbit that is born at a pitchfork or
 # flip differs by so much at a distance of some 1e-12; nearer to it Newton's method does not distinguish the two orbits.
@@ -283,7 +283,7 @@ class Solution:
 def corrected(solutions: list[Solution]) -> list[Solution | None]:
     """`Solution.corrected` of orbits with the same impacts, together where only their contacts differ."""
     result: list[Solution | None] = []
-    for _, group in groupby(solutions, lambda one: Keyed(one.family.linear, tables(one.family.linear))):
+    for _, group in groupby(solutions, lambda one: KeyOfFields(one.family.linear, tables(one.family.linear))):
         some = list(group)
         if not some[0].K or some[0].rests:
             result += [one.corrected() for one in some]

@@ -10,8 +10,8 @@ import numpy as np
 from vibro_sweep.checks.arguments import checked_word
 from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.checks.refusals import cut
-from vibro_sweep.oscillator.built import BUILD
 from vibro_sweep.oscillator.checked_numbers import range_of
+from vibro_sweep.oscillator.function_model import BUILD
 from vibro_sweep.results.sweep_dataset import Sweep
 from vibro_sweep.tables.coordinates import state
 from vibro_sweep.tables.file_columns import SWEEP

@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.oscillator.linear import Linear, bordered, taken
+from vibro_sweep.oscillator.linear import Linear, bordered, selected
 from vibro_sweep.oscillator.stacks import diagonal, dot, finite, least_squares, only, times, transposed
 
 
@@ -123,7 +123,7 @@ def origin_of(q: Linear) -> np.ndarray:
     result = np.zeros(q.normal.shape)
     far = is_far(q.middle, np.minimum(np.abs(q.middle - q.low), np.abs(q.high - q.middle)))
     if far.any():
-        result[far] = _held_in_the_middle(taken(q, far))
+        result[far] = _held_in_the_middle(selected(q, far))
     return result
 
 

@@ -22,7 +22,7 @@ from vibro_sweep.engine.impulses.free_modes import (
     has_free_gap,
 )
 from vibro_sweep.engine.impulses.taylor_orders import ORDER, exponential, power, taylor_rows
-from vibro_sweep.oscillator.linear import MATRICES, MOTION, STEP, Linear, amplitudes, forcing_period, remembered
+from vibro_sweep.oscillator.linear import MATRICES, MOTION, STEP, Linear, amplitudes, forcing_period, memoised
 
 DOUBLINGS = 18
 
@@ -50,7 +50,7 @@ class Coordinates(NamedTuple):
         return result
 
 
-@remembered("M", "normal")
+@memoised("M", "normal")
 def contact_coordinates(q: Linear) -> Coordinates:
     """The coordinates of the masses where n = e_1 and M is diagonal. Which mass is left out depends on n alone: what
     follows from the coordinates stays smooth along branches."""
@@ -109,13 +109,13 @@ def free_rates(q: Linear) -> np.ndarray:
     return A
 
 
-@remembered(*MOTION, most=16)
+@memoised(*MOTION, most=16)
 def flow(q: Linear) -> Flow:
     """Tables of the free flight. Raises TooStiffError."""
     return _flow(q, rates(q))
 
 
-@remembered(*MOTION, most=16)
+@memoised(*MOTION, most=16)
 def constrained_flow(q: Linear) -> Flow:
     """Tables of the motion while the gap stays as it is."""
     B = rates(q)
@@ -162,7 +162,7 @@ def _flow(q: Linear, B: np.ndarray, rate: float = 0.0) -> Flow:
     )
 
 
-@remembered(*MATRICES)
+@memoised(*MATRICES)
 def closing(q: Linear, sigma: int, half_periods: int) -> np.ndarray:
     """(n, n + 1): from what a period adds to a zero state, and the gap, the state that repeats itself with sigma.
 

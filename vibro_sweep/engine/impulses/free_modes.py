@@ -6,7 +6,7 @@ import numpy as np
 
 from vibro_sweep.checks.errors import VibroSweepError
 from vibro_sweep.engine.impulses.taylor_orders import REACH
-from vibro_sweep.oscillator.linear import MATRICES, Linear, forcing_period, remembered
+from vibro_sweep.oscillator.linear import MATRICES, Linear, forcing_period, memoised
 
 MOST_CELLS = 1 << 17
 
@@ -19,7 +19,7 @@ class ResonanceError(VibroSweepError, ValueError):
     """An undamped mode repeats itself after P: such orbits do not exist, or are not isolated."""
 
 
-@remembered(*MATRICES)
+@memoised(*MATRICES)
 def free_modes(q: Linear) -> tuple[np.ndarray, np.ndarray]:
     """Shapes of the free modes (N, count), the one that the contact sees first, and what the contact sees of each.
 
@@ -53,7 +53,7 @@ def has_free_gap(q: Linear) -> bool:
     return bool(np.any(free_modes(q)[1]))
 
 
-@remembered(*MATRICES)
+@memoised(*MATRICES)
 def cells_needed(q: Linear) -> int:
     """Cells in half a forcing period."""
     inverse = np.linalg.inv(q.M)

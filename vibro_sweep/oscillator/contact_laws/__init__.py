@@ -9,12 +9,12 @@ _ORDER = ("rigid", "compliant")  # others follow by name
 
 
 def _found() -> dict[str, ContactLaw]:
-    modules = (import_module(f"{__name__}.{one.name}") for one in pkgutil.iter_modules(__path__))
+    modules = (import_module(f"{__name__}.{file.name}") for file in pkgutil.iter_modules(__path__))
     laws = {module.LAW.name: module.LAW for module in modules if hasattr(module, "LAW")}
-    return {name: laws[name] for name in sorted(laws, key=lambda one: (*_ORDER, one).index(one))}
+    return {name: laws[name] for name in sorted(laws, key=lambda name: (*_ORDER, name).index(name))}
 
 
 LAWS = _found()
 RIGID = LAWS["rigid"]
-STOP_NUMBERS = tuple(one for law in LAWS.values() for one in law.numbers_of_both)
-OTHER_STOPS = tuple(one for one in STOP_NUMBERS if one not in RIGID.numbers_of_both)  # of stops that are not rigid
+STOP_NUMBERS = tuple(number for law in LAWS.values() for number in law.numbers_of_both)
+OTHER_STOPS = tuple(x for x in STOP_NUMBERS if x not in RIGID.numbers_of_both)  # of stops that are not rigid

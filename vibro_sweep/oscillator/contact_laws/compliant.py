@@ -33,11 +33,11 @@ LAW = ContactLaw(
     numbers=NUMBERS,
     left=tuple(
         replace(
-            one, name=f"{one.name}_left", symbol=one.symbol.replace("stop", "left"),
-            label=f"left {one.label.split(' ')[0]}", text=f"{one.name} of the left stop; left out: {one.name}",
-            follows=one.name,
+            number, name=f"{number.name}_left", symbol=number.symbol.replace("stop", "left"),
+            label=f"left {number.label.split(' ')[0]}", text=f"{number.name} of the left stop; left out: {number.name}",
+            follows=number.name,
         )
-        for one in NUMBERS
+        for number in NUMBERS
     ),
     options=(
         Choice(

@@ -34,4 +34,5 @@ class ContactLaw:
     @cached_property
     def names(self) -> dict[str, tuple[str, ...]]:
         """The names of the numbers of the stop on each side, right and left."""
-        return {side: tuple(one.name for one in own) for side, own in (("right", self.numbers), ("left", self.left))}
+        sides = (("right", self.numbers), ("left", self.left))
+        return {side: tuple(number.name for number in numbers) for side, numbers in sides}

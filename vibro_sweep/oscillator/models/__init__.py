@@ -11,9 +11,9 @@ _ORDER = ("two_mass", "one_mass", "ball_in_cavity", "chain", "linear")  # others
 
 
 def _found() -> dict[str, Model]:
-    modules = (import_module(f"{__name__}.{one.name}") for one in pkgutil.iter_modules(__path__))
+    modules = (import_module(f"{__name__}.{file.name}") for file in pkgutil.iter_modules(__path__))
     models = {module.MODEL.name: module.MODEL for module in modules if hasattr(module, "MODEL")}
-    return {name: models[name] for name in sorted(models, key=lambda one: (*_ORDER, one).index(one))}
+    return {name: models[name] for name in sorted(models, key=lambda name: (*_ORDER, name).index(name))}
 
 
 MODELS = _found()

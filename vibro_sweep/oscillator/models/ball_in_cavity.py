@@ -63,6 +63,6 @@ MODEL = Model(
         PHASE,
     ),
     options=(*OF_STOPS, UNITS),
-    masses=lambda given: 2,
+    masses=lambda arguments: 2,
     build=ball_in_cavity,
 )

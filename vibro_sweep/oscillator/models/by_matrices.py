@@ -43,7 +43,7 @@ def linear(
 def damping(M, K, C, modal_damping, rayleigh) -> np.ndarray:
     """The damping matrix: as given, from a ratio for each mode, or alpha M + beta K; else none."""
     if rayleigh is not None:
-        alpha, beta = (np.asarray(one)[..., None, None] for one in rayleigh)
+        alpha, beta = (np.asarray(factor)[..., None, None] for factor in rayleigh)
         return alpha * M + beta * K
     if modal_damping is not None:
         from scipy.linalg import eigh  # slow to import
@@ -54,8 +54,8 @@ def damping(M, K, C, modal_damping, rayleigh) -> np.ndarray:
     return np.zeros_like(M) if C is None else np.array(C, float)
 
 
-def _check(given) -> None:
-    sizes = {name: len(given[name]) for name in ("M", "K", "C", "contact_normal") if given[name] is not None}
+def _check(arguments) -> None:
+    sizes = {name: len(arguments[name]) for name in ("M", "K", "C", "contact_normal") if arguments[name] is not None}
     masses = sizes["M"]
     for name, size in sizes.items():
         if size != masses:
@@ -64,22 +64,22 @@ def _check(given) -> None:
                 if name != "contact_normal"
                 else f"a list of {masses} numbers"
             )
-            raise ParameterError(name, wording.plain(given[name]), f"{what}, as there are {masses} masses in M")
+            raise ParameterError(name, wording.plain(arguments[name]), f"{what}, as there are {masses} masses in M")
         if name != "contact_normal":
-            _check_symmetric(name, np.array(given[name]))
-    if np.linalg.eigvalsh(given["M"]).min() <= 0:
-        raise ParameterError("M", wording.plain(given["M"]), f"positive definite: {KINETIC}")
+            _check_symmetric(name, np.array(arguments[name]))
+    if np.linalg.eigvalsh(arguments["M"]).min() <= 0:
+        raise ParameterError("M", wording.plain(arguments["M"]), f"positive definite: {KINETIC}")
     for name in ("K", "C"):
-        if given[name] is not None:
-            values = np.linalg.eigvalsh(given[name])
+        if arguments[name] is not None:
+            values = np.linalg.eigvalsh(arguments[name])
             if values.min() < -ROUNDING * np.abs(values).max():
                 raise ParameterError(
-                    name, wording.plain(given[name]), "positive semidefinite: no motion may gain energy by it"
+                    name, wording.plain(arguments[name]), "positive semidefinite: no motion may gain energy by it"
                 )
-    checked_normal(given["contact_normal"])
-    several = [name for name in DAMPING if given[name] is not None]
+    checked_normal(arguments["contact_normal"])
+    several = [name for name in DAMPING if arguments[name] is not None]
     if len(several) > 1:
-        raise ParameterError(several[1], wording.plain(given[several[1]]), f"left out where {several[0]} is given")
+        raise ParameterError(several[1], wording.plain(arguments[several[1]]), f"left out where {several[0]} is given")
 
 
 WITHOUT_SYMMETRY = {"C": "; gyroscopic forces are not computed", "K": "; circulatory forces are not computed"}
@@ -88,18 +88,18 @@ WITHOUT_SYMMETRY = {"C": "; gyroscopic forces are not computed", "K": "; circula
 def _check_symmetric(name: str, matrix: np.ndarray) -> None:
     apart = np.abs(matrix - matrix.T)
     if apart.max() > ROUNDING * np.abs(matrix).max():
-        i, j = (int(one) for one in np.unravel_index(apart.argmax(), apart.shape))
+        i, j = (int(index) for index in np.unravel_index(apart.argmax(), apart.shape))
         entries = f"entries {i + 1}, {j + 1} and {j + 1}, {i + 1} differ: {matrix[i, j]:g} and {matrix[j, i]:g}"
         raise ParameterError(name, matrix.tolist(), f"symmetric; {entries}{WITHOUT_SYMMETRY.get(name, '')}")
 
 
-def _depending(given) -> dict[str, str]:
+def _depending(arguments) -> dict[str, str]:
     """The parameters of forces that grow like a power of omega, and alpha and beta of `rayleigh`."""
-    power = given["force_power"]
+    power = arguments["force_power"]
     force = f"kg m s{power - 2:.0f}" if power not in (0, 2) else "N" if power == 0 else "kg m"
     if power != int(power):
         force = "1"  # CF has whole powers only
-    forces = {f"{name}{i}": force for name in ("force", "force_cos") for i in range(1, len(given["M"]) + 1)}
+    forces = {f"{name}{i}": force for name in ("force", "force_cos") for i in range(1, len(arguments["M"]) + 1)}
     return forces | {"rayleigh1": "s-1", "rayleigh2": "s"}
 
 
@@ -165,7 +165,7 @@ MODEL = Model(
         *OF_STOPS,
         UNITS,
     ),
-    masses=lambda given: len(given["M"]),
+    masses=lambda arguments: len(arguments["M"]),
     build=linear,
     depending=_depending,
     check=_check,

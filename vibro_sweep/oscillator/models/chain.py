@@ -36,10 +36,11 @@ def between_walls(springs) -> np.ndarray:
     return result
 
 
-def _check(given) -> None:
-    masses = len(given["m"])
-    if not 1 <= given["stop_at"] <= masses:
-        raise ParameterError("stop_at", given["stop_at"], f"a whole number from 1 to {masses}, the number of masses")
+def _check(arguments) -> None:
+    masses = len(arguments["m"])
+    if not 1 <= arguments["stop_at"] <= masses:
+        allowed = f"a whole number from 1 to {masses}, the number of masses"
+        raise ParameterError("stop_at", arguments["stop_at"], allowed)
 
 
 def _list(name: str, symbol: str, units: str, range_, each: str, label: str, text: str, default=None) -> Parameter:
@@ -75,7 +76,7 @@ MODEL = Model(
         *OF_STOPS,
         UNITS,
     ),
-    masses=lambda given: len(given["m"]),
+    masses=lambda arguments: len(arguments["m"]),
     build=chain,
     check=_check,
 )

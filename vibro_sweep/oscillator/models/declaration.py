@@ -38,42 +38,43 @@ class Model(NamedTuple):
     options: tuple[Option, ...]
     masses: Callable[[Mapping[str, Any]], int]  # N, from what is given
     build: Callable[..., Linear]  # from all numbers and options by name; analytic in the numbers, also complex ones
-    check: Callable[[Mapping[str, Any]], None] = lambda given: None  # raises ParameterError: how they must fit
-    depending: Callable[[Mapping[str, Any]], dict[str, str]] = lambda given: {}  # units of numbers that others decide
+    check: Callable[[Mapping[str, Any]], None] = lambda arguments: None  # raises ParameterError: how they must fit
+    depending: Callable[[Mapping[str, Any]], dict[str, str]] = lambda values: {}  # units of numbers that others decide
 
     def flat(self, masses: int) -> dict[str, Parameter]:
         """The numbers that can be swept; of a list m these are m1, m2, ..."""
         result = {}
-        for one in self.numbers:
-            result |= {each.name: each for each in entries(one, masses)} if one.each else {one.name: one}
+        for quantity in self.numbers:
+            result |= {x.name: x for x in (entries(quantity, masses) if quantity.each else [quantity])}
         return result
 
 
-def names_of(one: Parameter, masses: int) -> list[str]:
+def names_of(quantity: Parameter, masses: int) -> list[str]:
     """Names of the numbers of a list, counted from 1."""
-    return [f"{one.name}{i}" for i in range(1, LENGTHS[one.each](masses) + 1)]
+    return [f"{quantity.name}{i}" for i in range(1, LENGTHS[quantity.each](masses) + 1)]
 
 
-def entries(one: Parameter, masses: int) -> list[Parameter]:
+def entries(quantity: Parameter, masses: int) -> list[Parameter]:
     """The numbers of a list."""
     return [
         replace(
-            one,
+            quantity,
             name=name,
-            symbol=f"{one.symbol}_{{{i}}}" if "_" not in one.symbol else f"{one.symbol}{{}}_{{{i}}}",
-            text=f"{one.text}, {one.each} {i}",
+            symbol=f"{quantity.symbol}_{{{i}}}" if "_" not in quantity.symbol else f"{quantity.symbol}{{}}_{{{i}}}",
+            text=f"{quantity.text}, {quantity.each} {i}",
         )
-        for i, name in enumerate(names_of(one, masses), start=1)
+        for i, name in enumerate(names_of(quantity, masses), start=1)
     ]
 
 
-def linear_of(model: Model, given: Mapping[str, Any]) -> Linear:
+def linear_of(model: Model, arguments: Mapping[str, Any]) -> Linear:
     """The oscillator with these numbers and options; those of lists may be given one by one, as m1, m2, ..."""
-    masses, whole = model.masses(given), {name: value for name, value in given.items() if name != UNITS.name}
-    for one in model.numbers:
-        if one.each and whole.get(one.name) is not None:
-            names = names_of(one, masses)
-            whole[one.name] = [whole.pop(name, value) for name, value in zip(names, whole[one.name], strict=True)]
+    masses, whole = model.masses(arguments), {name: value for name, value in arguments.items() if name != UNITS.name}
+    for quantity in model.numbers:
+        if quantity.each and whole.get(quantity.name) is not None:
+            names = names_of(quantity, masses)
+            pairs = zip(names, whole[quantity.name], strict=True)
+            whole[quantity.name] = [whole.pop(name, value) for name, value in pairs]
     with np.errstate(all="ignore"):  # matrices beyond the range of the floats: such an oscillator is too stiff
         return model.build(**whole)
 
@@ -84,6 +85,8 @@ UNITS = Option(
 )  # fmt: skip
 WHICH_STOPS = Option("stops", "word", "which stops there are", "both", STOPS)
 OF_STOPS = tuple(
-    Option(one.name, "word", one.text, one.words[0], one.words) for law in LAWS.values() for one in law.options
+    Option(quantity.name, "word", quantity.text, quantity.words[0], quantity.words)
+    for law in LAWS.values()
+    for quantity in law.options
 )
 CONTACT = (FREQUENCY, *STOP_NUMBERS, CLEARANCE, OFFSET, PHASE)  # numbers that every model has

@@ -60,7 +60,7 @@ MODEL = Model(
         *OF_STOPS,
         UNITS,
     ),
-    masses=lambda given: 1,
+    masses=lambda arguments: 1,
     build=one_mass,
-    depending=lambda given: {"F": "m"} if given["base"] else {},  # the wall's motion
+    depending=lambda arguments: {"F": "m"} if arguments["base"] else {},  # the wall's motion
 )

@@ -32,8 +32,8 @@ PARAMETERS = (
               free_motion=True, optional=True, follows="mu_k"),
     *OTHER_STOPS,
 )  # fmt: skip
-NAMES = tuple(one.name for one in PAPER)
-FREE_MOTION = tuple(one.name for one in PAPER if one.free_motion)
+NAMES = tuple(parameter.name for parameter in PAPER)
+FREE_MOTION = tuple(parameter.name for parameter in PAPER if parameter.free_motion)
 
 
 @np.errstate(all="ignore")  # matrices beyond the range of the floats: such an oscillator is too stiff
@@ -71,6 +71,6 @@ MODEL = Model(
     source="the paper that this package follows, eqs. (3), (4): docs/how/models.md",
     numbers=PARAMETERS,
     options=(WHICH_STOPS, *OF_STOPS, UNITS),
-    masses=lambda given: 2,
+    masses=lambda arguments: 2,
     build=two_mass,
 )

@@ -20,7 +20,7 @@ STORED = {  # of a Linear, with the symbol that it has in files
 }  # fmt: skip
 
 
-class Built(Oscillator):
+class FunctionModel(Oscillator):
     """The System or Oscillator that `function(**numbers)` returns. Raises TypeError where it is neither."""
 
     tau = "grazing"  # whatever the function says of it, it may change with every number
@@ -28,19 +28,19 @@ class Built(Oscillator):
     def __init__(self, function: Callable[..., Oscillator], numbers: Mapping[str, float], same_units: bool = True):
         base = _made(function, numbers)
         named = tuple(Parameter(name, name, name, rf"\mathrm{{{name}}}", free_motion=True) for name in numbers)
-        model = Model(BUILD, _name(function), "", "", "", named, (), lambda given: base.masses, self._linear)
+        model = Model(BUILD, _name(function), "", "", "", named, (), lambda arguments: base.masses, self._linear)
         vars(self).update(
-            function=function, base=base, model=model, given=dict(numbers), same_units=same_units, others=()
+            function=function, base=base, model=model, arguments=dict(numbers), same_units=same_units, others=()
         )
 
     def __eq__(self, other):
-        return isinstance(other, Built) and (self.function, self.given) == (other.function, other.given)
+        return isinstance(other, FunctionModel) and (self.function, self.arguments) == (other.function, other.arguments)
 
     def __hash__(self):
-        return hash((self.function, tuple(self.given.items())))
+        return hash((self.function, tuple(self.arguments.items())))
 
     def __reduce__(self):
-        return Built, (self.function, self.given, self.same_units)
+        return FunctionModel, (self.function, self.arguments, self.same_units)
 
     def _linear(self, **numbers) -> Linear:
         made = _made(self.function, numbers)
@@ -72,7 +72,7 @@ class Built(Oscillator):
 
     @property
     def family(self) -> Family:
-        return Family(self._linear, self.given)
+        return Family(self._linear, self.arguments)
 
     @cached_property
     def linear(self) -> Linear:
@@ -82,8 +82,8 @@ class Built(Oscillator):
     def omega(self) -> float:
         return self.base.omega
 
-    def replace(self, **changes: Any) -> "Built":
-        return Built(self.function, self.given | changes, self.same_units)
+    def replace(self, **changes: Any) -> "FunctionModel":
+        return FunctionModel(self.function, self.arguments | changes, self.same_units)
 
 
 def _made(function: Callable[..., Oscillator], numbers: Mapping[str, float]) -> Oscillator:
@@ -107,15 +107,15 @@ def sizes_of(q: Linear) -> dict[str, np.ndarray]:
 
 def stored_of(q: Linear) -> dict[str, np.ndarray]:
     """Every number (...) of a stack by the name that files have for it: M11, M12, ..; along1; omega; low; R_low; ..."""
-    found = {}
+    numbers_of_fields = {}
     for field in STORED:
         values = getattr(q, field)
         n = values.shape[-1]
         if field in ("M", "K", "C"):
-            found |= {f"{field}{i + 1}{j + 1}": values[..., i, j] for i in range(n) for j in range(i, n)}
+            numbers_of_fields |= {f"{field}{i + 1}{j + 1}": values[..., i, j] for i in range(n) for j in range(i, n)}
         else:
-            found |= {f"{field}{i + 1}": values[..., i] for i in range(n)}
-    return found | {name: getattr(q, name) for name in ("omega", "tau", "low", "high", "R_low", "R_high")}
+            numbers_of_fields |= {f"{field}{i + 1}": values[..., i] for i in range(n)}
+    return numbers_of_fields | {name: getattr(q, name) for name in ("omega", "tau", "low", "high", "R_low", "R_high")}
 
 
 def stored_names(masses: int) -> dict[str, Parameter]:
