@@ -5,9 +5,7 @@ pieces of any size: its numbers are put together. How many points a branch has i
 """
 
 import io
-import tempfile
 from contextlib import contextmanager, redirect_stdout
-from pathlib import Path
 
 import numpy as np
 from support.explorers import answers
@@ -87,18 +85,7 @@ def _answer(words: dict, arrays: dict) -> dict:
     if words["type"] == "window" and "branches" in kept:
         kept["branches"] = [lines for _, lines in kept["branches"]]
         arrays = {name: [arrays[name].min(), arrays[name].max()] for name in ("value", "y")}
-    if words["type"] == "saved" and "data" in arrays:
-        return {"type": "saved", "form": words["form"], "variables": _variables_of(arrays["data"].tobytes())}
     return {"type": words["type"], "words": kept, "arrays": {name: array(values) for name, values in arrays.items()}}
-
-
-def _variables_of(file: bytes) -> dict:
-    """Names and dimensions of what is in a file."""
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "saved.h5"
-        path.write_bytes(file)
-        with vs.open(path) as data:
-            return {name: list(variable.dims) for name, variable in data.variables.items()}
 
 
 def _words(words: dict) -> dict:

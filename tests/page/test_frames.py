@@ -49,7 +49,7 @@ def put_together(pieces, name, like):
 ]), ids=["rest", "up", "random", "down", "both", "R", "one_mass"])  # fmt: skip
 def test_the_final_picture_has_the_bits_of_the_sweep(page, view, changes):
     view |= {"columns": 64, "transient": 100, "record": 20, "low": 5.3, "high": 5.9} | changes
-    scene = parsed(answers(page, "save", 2, view=view, form="yaml")[0]["text"])
+    scene = parsed(answers(page, "save", 2, view=view)[0]["text"])
     options = {"start": view["start"] or None, "transient": 100, "record": 20}
     data = vs.sweep(scene.system, scene.sweep, observe=["section", "lyapunov"], **options)
     whole = data["x1"].values.reshape(64, -1, 20)

@@ -146,7 +146,36 @@ def test_the_address_holds_the_view(page, browser, program):
     other.wait_for_timeout(300)
     assert other.input_value("#field-omega") == "0.7"
     assert colours(other) == colours(page)
+    page.locator("#status", has_text="another tab or window shows this page now. Reload this one").wait_for()
+    page.reload()
+    settle(page)
+    other.locator("#status", has_text="another tab").wait_for()
     other.close()
+
+
+def test_shift_and_drag_moves_the_view(page):
+    box = page.locator("#diagram").bounding_box()
+    page.keyboard.down("Shift")
+    page.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + 0.3 * box["height"])
+    page.mouse.down()
+    page.mouse.move(box["x"] + 0.7 * box["width"], box["y"] + 0.3 * box["height"], steps=5)
+    page.mouse.up()
+    page.keyboard.up("Shift")
+    settle(page)
+    low, high = float(page.input_value("#low")), float(page.input_value("#high"))
+    assert low < 3.9 and high - low == pytest.approx(2.8)
+    page.click("#back")
+    assert (page.input_value("#low"), page.input_value("#high")) == ("4.2", "7")
+
+
+def test_a_scene_and_a_picture_are_saved(page, tmp_path):
+    for form, name in (("yaml", "explored.yaml"), ("png", "explored.png")):
+        page.click("#save summary")
+        with page.expect_download() as download:
+            page.click(f"#save [data-form={form}]")
+        download.value.save_as(tmp_path / name)
+    assert vs.load_scene(tmp_path / "explored.yaml").sweep["b"][[0, -1]].tolist() == [4.2, 7]
+    assert (tmp_path / "explored.png").read_bytes()[:4] == b"\x89PNG"
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])

@@ -12,13 +12,11 @@ from vibro_sweep.live.messages import binary_message, number, text_message
 from vibro_sweep.live.model_words import model_words
 from vibro_sweep.live.pace import Pace
 from vibro_sweep.live.requests import ClickedOrbit, OfOneOrbit, Open, Save, Sweep, WindowEnds
-from vibro_sweep.live.saved_view import hdf5_of, python_of, svg_of
 from vibro_sweep.live.views import base_of, height_of, needed, scene_of_view, view_of
 from vibro_sweep.live.window_ends import window_message
 from vibro_sweep.oscillator.grazing import grazing
 from vibro_sweep.scene import Scene
 
-CONTENTS = {"hdf5": hdf5_of, "svg": svg_of}
 EXPONENTS = ("lyapunov", "lyapunov_error")
 
 Message = str | bytes
@@ -55,11 +53,17 @@ class Answers:
                 self._view, self._ends = view, ends
             yield binary_message("frame", request.seq, arrays | dots, **about, **_place(frame))
 
+    def click(self, request: ClickedOrbit | Open | Save) -> Message:
+        """The answer to what takes a moment."""
+        if isinstance(request, ClickedOrbit):
+            return self.orbit(request)
+        return self.opened(request) if isinstance(request, Open) else self.saved(request)
+
     def orbit(self, request: ClickedOrbit) -> Message:
         """The orbit at a value."""
         found, went_on = self._settled(request)
         arrays, words = orbit_message(found)
-        words |= {"slot": request.slot, "value": request.value, "went_on": went_on}
+        words |= {"value": request.value, "went_on": went_on}
         return binary_message("orbit", request.seq, arrays, **words)
 
     def window(self, request: WindowEnds, progress: Callable[[int, float], None]) -> Message:
@@ -78,13 +82,8 @@ class Answers:
         return text_message("model", request.seq, **words, **model_words(base_of(view), view))
 
     def saved(self, request: Save) -> Message:
-        """A view as a scene, a program or its data."""
-        scene = scene_of_view(request.view)
-        if request.form in CONTENTS:
-            data = np.frombuffer(CONTENTS[request.form](scene), np.uint8)
-            return binary_message("saved", request.seq, {"data": data}, form=request.form)
-        text = scene.to_yaml() if request.form == "yaml" else python_of(scene)
-        return text_message("saved", request.seq, form=request.form, text=text)
+        """A view as a scene."""
+        return text_message("saved", request.seq, text=scene_of_view(request.view).to_yaml())
 
     def _settled(self, request: OfOneOrbit) -> tuple[Settled, bool]:
         """The orbit, and whether it goes on from the end of the one in the diagram."""

@@ -1,35 +1,40 @@
-"""The threads in which pages are answered: one by turns, in pieces, and one for what takes long.
+"""The threads in which the page is answered: one by turns, in pieces, and one for what takes long.
 
-A page's new request takes the place of the one that waits, and what is left of the older one's pieces is dropped.
+There is one visitor: a page that comes takes the place of the one before. A new request takes the place of the one that
+waits, and what is left of the older one's pieces is dropped.
 """
 
 import contextlib
 import logging
 import threading
 from collections.abc import Callable, Iterator
+from functools import partial
 
 import numpy as np
 
 from vibro_sweep.checks.errors import VibroSweepError
 from vibro_sweep.live.answers import Answers, Message
 from vibro_sweep.live.messages import text_message
-from vibro_sweep.live.requests import Request, Save, Sweep, WindowEnds
+from vibro_sweep.live.requests import Request, Sweep, WindowEnds
 
-MOST_UNSENT = 4  # messages of a page, after which it gets no turn
+MOST_UNSENT = 4  # messages to the page, after which it gets no more
 MOST_WORDS = 2000  # letters of an error
 _log = logging.getLogger("vibro_sweep")
 
 
-class Page:
-    """A page: what it asks for, what it is sent. send : called in a thread of the engine."""
+class Visitor:
+    """The page: what it asks for, what it is sent.
 
-    def __init__(self, answers: Answers, send: Callable[[Message], None]):
+    send : called in a thread of the engine; None: another page has taken its place
+    """
+
+    def __init__(self, answers: Answers, send: Callable[[Message | None], None]):
         self.answers, self.send = answers, send
         self.sweep: Sweep | None = None  # that waits
         self.frames: Iterator[Message] | None = None
         self.drawn: Sweep | None = None  # whose frames these are
-        self.clicks: dict[object, Request] = {}  # by kind: the last one of each
-        self.slow: dict[object, Request] = {}
+        self.clicks: dict[str, Request] = {}  # by type: the last one of each
+        self.window: WindowEnds | None = None
         self.unsent = 0
         self.newest = -1  # number of the last request that changes what is shown
 
@@ -39,43 +44,45 @@ class StaleError(Exception):
 
 
 class EngineThreads:
-    """Answers pages. Every method may be called in any thread."""
+    """Answers the visitor. Every method may be called in any thread."""
 
     def __init__(self) -> None:
-        self._pages: list[Page] = []  # that whose turn is next comes first
+        self._visitor: Visitor | None = None
         self._changed = threading.Condition()
         self._closed = False
-        self._threads = [threading.Thread(target=one, daemon=True) for one in (self._turns, self._slow_ones)]
-        for thread in self._threads:
-            thread.start()
+        for turns in (self._turns, self._slow_turns):
+            threading.Thread(target=turns, daemon=True).start()
 
-    def add(self, page: Page) -> None:
-        """Answer a page from now on."""
+    def welcome(self, visitor: Visitor) -> None:
+        """Answer this one from now on, and the one before no longer."""
         with self._changed:
-            self._pages.append(page)
+            before, self._visitor = self._visitor, visitor
+        if before is not None:
+            before.send(None)
 
-    def remove(self, page: Page) -> None:
+    def leave(self, visitor: Visitor) -> None:
         """Answer it no longer."""
         with self._changed:
-            self._pages.remove(page)
+            if self._visitor is visitor:
+                self._visitor = None
 
-    def ask(self, page: Page, request: Request) -> None:
-        """A request of a page."""
+    def ask(self, visitor: Visitor, request: Request) -> None:
+        """A request of a visitor."""
         with self._changed:
             if isinstance(request, (Sweep, WindowEnds)):
-                page.newest = request.seq
+                visitor.newest = request.seq
             if isinstance(request, Sweep):
-                page.sweep, page.frames = request, None
-            elif isinstance(request, (WindowEnds, Save)):
-                page.slow[type(request)] = request
+                visitor.sweep, visitor.frames = request, None
+            elif isinstance(request, WindowEnds):
+                visitor.window = request
             else:
-                page.clicks[type(request), getattr(request, "slot", 0)] = request
+                visitor.clicks[request.type] = request
             self._changed.notify_all()
 
-    def sent(self, page: Page) -> None:
-        """A message to a page has gone."""
+    def sent(self, visitor: Visitor) -> None:
+        """A message has gone to it."""
         with self._changed:
-            page.unsent -= 1
+            visitor.unsent -= 1
             self._changed.notify_all()
 
     def close(self) -> None:
@@ -84,57 +91,54 @@ class EngineThreads:
             self._closed = True
             self._changed.notify_all()
 
+    def _next(self, has_work: Callable[[Visitor], bool]) -> Visitor | None:
+        """The visitor, once there is something to do for it, and it reads; None: the engine is closed."""
+
+        def is_ready() -> bool:
+            visitor = self._visitor
+            return self._closed or (visitor is not None and visitor.unsent < MOST_UNSENT and has_work(visitor))
+
+        self._changed.wait_for(is_ready)
+        return None if self._closed else self._visitor
+
     def _turns(self) -> None:
         while True:
             with self._changed:
-                self._changed.wait_for(lambda: self._closed or any(map(_waits, self._pages)))
-                if self._closed:
+                visitor = self._next(lambda one: bool(one.clicks or one.sweep or one.frames))
+                if visitor is None:
                     return
-                page = next((one for one in self._pages if one.clicks and _reads(one)), None)
-                page = page or next(one for one in self._pages if _waits(one))
-                self._pages.remove(page)
-                self._pages.append(page)
-                click = page.clicks.pop(next(iter(page.clicks))) if page.clicks else None
-                sweep, frames = page.sweep, page.frames
+                click = visitor.clicks.pop(next(iter(visitor.clicks))) if visitor.clicks else None
+                sweep, frames = visitor.sweep, visitor.frames
                 if click is None:
-                    page.sweep = None
+                    visitor.sweep = None
             if click is not None:
-                self._answer(page, click, lambda page=page, click=click: _of_click(page, click))
-            else:
-                self._next_frame(page, sweep, frames)
+                self._answer(visitor, click, partial(visitor.answers.click, click))
+                continue
+            if sweep is not None:  # the first frame of a new diagram, or the next one of the last
+                frames, visitor.drawn = visitor.answers.diagram(sweep), sweep
+            more = self._answer(visitor, visitor.drawn, partial(next, frames, None))
+            with self._changed:
+                visitor.frames = frames if more and visitor.sweep is None else None
 
-    def _next_frame(self, page: Page, sweep: Sweep | None, frames: Iterator[Message] | None) -> None:
-        """The first frame of a new diagram, or the next one of the last."""
-        if sweep is not None:
-            frames = page.answers.diagram(sweep)
-            page.drawn = sweep
-        more = self._answer(page, page.drawn, lambda: next(frames, None))
-        with self._changed:
-            page.frames = frames if more and page.sweep is None else None
-
-    def _slow_ones(self) -> None:
+    def _slow_turns(self) -> None:
         while True:
             with self._changed:
-                self._changed.wait_for(lambda: self._closed or any(one.slow and _reads(one) for one in self._pages))
-                if self._closed:
+                visitor = self._next(lambda one: one.window is not None)
+                if visitor is None:
                     return
-                page = next(one for one in self._pages if one.slow and _reads(one))
-                request = page.slow.pop(next(iter(page.slow)))
-            self._answer(page, request, lambda page=page, request=request: self._of_slow(page, request))
+                request, visitor.window = visitor.window, None
+            self._answer(visitor, request, partial(self._window, visitor, request))
 
-    def _of_slow(self, page: Page, request: Request) -> Message | None:
-        if isinstance(request, Save):
-            return page.answers.saved(request)
-
+    def _window(self, visitor: Visitor, request: WindowEnds) -> Message | None:
         def progress(points: int, value: float) -> None:
-            if page.newest > request.seq or page not in self._pages or self._closed:
+            if visitor.newest > request.seq or visitor is not self._visitor or self._closed:
                 raise StaleError
 
         with contextlib.suppress(StaleError):
-            return page.answers.window(request, progress)  # type: ignore[arg-type]
+            return visitor.answers.window(request, progress)
         return None
 
-    def _answer(self, page: Page, request: Request, make: Callable[[], Message | None]) -> bool:
+    def _answer(self, visitor: Visitor, request: Request, make: Callable[[], Message | None]) -> bool:
         """Send an answer, or why there is none. Returns whether there was one."""
         made = True
         try:
@@ -150,21 +154,9 @@ class EngineThreads:
         if message is None:
             return False
         with self._changed:
-            page.unsent += 1
-        page.send(message)
+            visitor.unsent += 1
+        visitor.send(message)
         return made
-
-
-def _reads(page: Page) -> bool:
-    return page.unsent < MOST_UNSENT
-
-
-def _waits(page: Page) -> bool:
-    return _reads(page) and bool(page.clicks or page.sweep or page.frames)
-
-
-def _of_click(page: Page, request: Request) -> Message:
-    return page.answers.orbit(request) if request.type == "orbit" else page.answers.opened(request)  # type: ignore
 
 
 def _words(error: Exception) -> str:

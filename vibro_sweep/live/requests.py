@@ -79,10 +79,9 @@ class OfOneOrbit(_Request):
 
 
 class ClickedOrbit(OfOneOrbit):
-    """The orbit at a value of the swept number; slot: it is one of two that are compared."""
+    """The orbit at a value of the swept number."""
 
     type: Literal["orbit"]
-    slot: int = Field(default=0, ge=0, le=1)
 
 
 class WindowEnds(OfOneOrbit):
@@ -100,11 +99,10 @@ class Open(_Request):
 
 
 class Save(_Request):
-    """The view as a scene, as a program in Python, as a picture, or its data."""
+    """The view as a scene."""
 
     type: Literal["save"]
     view: View
-    form: Literal["yaml", "python", "svg", "hdf5"]
 
 
 Request = Sweep | ClickedOrbit | WindowEnds | Open | Save

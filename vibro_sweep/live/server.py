@@ -15,15 +15,14 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from vibro_sweep.live.access import HEADERS, host_is_here, knows_token, new_token, origin_is_foreign, origin_is_here
 from vibro_sweep.live.answers import Answers, Message
-from vibro_sweep.live.engine_thread import EngineThreads, Page
+from vibro_sweep.live.engine_thread import EngineThreads, Visitor
 from vibro_sweep.live.pace import Pace
 from vibro_sweep.live.requests import LONGEST, RequestError, request_of
 from vibro_sweep.scene import Scene
 
-MOST_PAGES = 16
 SLOWEST = 20.0  # seconds in which a page takes a message
 PAUSE = 0.001  # seconds between two requests of a page
-BAD_REQUEST, TOO_MANY = 1008, 1013  # codes with which a socket is closed
+BAD_REQUEST, TAKEN_OVER = 1008, 4000  # codes with which a socket is closed
 SWITCH = 0.0002  # seconds after which Python lets another thread run: answers leave at once
 TYPES = {".html": "text/html; charset=utf-8", ".css": "text/css", ".js": "text/javascript", ".svg": "image/svg+xml"}
 FILES = {path.name: path.read_bytes() for path in (Path(__file__).parent / "page").iterdir() if path.suffix in TYPES}
@@ -36,7 +35,7 @@ class Explorer:
     def __init__(self, presets: dict[str, Scene], first: str):
         self.token = new_token()
         self._presets, self._first = presets, first
-        self._engine, self._pace, self._open = EngineThreads(), Pace(), 0
+        self._engine, self._pace = EngineThreads(), Pace()
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         if scope["type"] == "http":
@@ -68,35 +67,28 @@ class Explorer:
             await ws.close()  # before it is accepted: 403
             return
         await ws.accept()
-        if self._open >= MOST_PAGES:
-            await ws.close(TOO_MANY, f"at most {MOST_PAGES} pages at a time")
-            return
-        self._open += 1
-        try:
-            await self._talk(ws)
-        finally:
-            self._open -= 1
+        await self._talk(ws)
 
     async def _talk(self, ws: WebSocket) -> None:
         """Read requests and send answers, until one of the two ends."""
-        loop, answers = asyncio.get_running_loop(), asyncio.Queue[Message]()
+        loop, answers = asyncio.get_running_loop(), asyncio.Queue[Message | None]()
 
-        def put(message: Message) -> None:
+        def put(message: Message | None) -> None:
             with contextlib.suppress(RuntimeError):  # the loop is closed
                 loop.call_soon_threadsafe(answers.put_nowait, message)
 
-        page = Page(Answers(self._presets, self._first, self._pace), put)
-        self._engine.add(page)
-        both = [asyncio.ensure_future(one) for one in (self._read(ws, page), self._write(ws, page, answers))]
+        visitor = Visitor(Answers(self._presets, self._first, self._pace), put)
+        self._engine.welcome(visitor)
+        both = [asyncio.ensure_future(task) for task in (self._read(ws, visitor), self._write(ws, visitor, answers))]
         try:
             await asyncio.wait(both, return_when=asyncio.FIRST_COMPLETED)
         finally:
-            self._engine.remove(page)
-            for one in both:
-                one.cancel()
+            self._engine.leave(visitor)
+            for task in both:
+                task.cancel()
             await asyncio.gather(*both, return_exceptions=True)
 
-    async def _read(self, ws: WebSocket, page: Page) -> None:
+    async def _read(self, ws: WebSocket, visitor: Visitor) -> None:
         with contextlib.suppress(WebSocketDisconnect):
             while True:
                 message = await ws.receive()
@@ -107,16 +99,19 @@ class Explorer:
                 except RequestError as error:
                     await ws.close(BAD_REQUEST, str(error)[:100])
                     return
-                self._engine.ask(page, request)
+                self._engine.ask(visitor, request)
                 await asyncio.sleep(PAUSE)
 
-    async def _write(self, ws: WebSocket, page: Page, answers: "asyncio.Queue[Message]") -> None:
+    async def _write(self, ws: WebSocket, visitor: Visitor, answers: "asyncio.Queue[Message | None]") -> None:
         with contextlib.suppress(WebSocketDisconnect, TimeoutError):
             while True:
                 message = await answers.get()
+                if message is None:
+                    await ws.close(TAKEN_OVER, "another tab or window shows this page now")
+                    return
                 sending = ws.send_text(message) if isinstance(message, str) else ws.send_bytes(message)
                 await asyncio.wait_for(sending, SLOWEST)
-                self._engine.sent(page)
+                self._engine.sent(visitor)
 
 
 class _Server(uvicorn.Server):

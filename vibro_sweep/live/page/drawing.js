@@ -220,12 +220,11 @@ export class Drawing {
     }
     for (const one of marks.branches) this.branch(one, x, y, theme);
     if (marks.window) this.ends(marks.window, x, dots, inside, theme);
-    marks.lines.forEach((value, i) => {
-      if (value === null || !inside(value)) return;
-      context.strokeStyle = i ? theme.second : theme.accent;
+    if (marks.line !== null && inside(marks.line)) {
+      context.strokeStyle = theme.accent;
       context.lineWidth = 1.2;
-      line(context, x(value), dots.y, x(value), exponents.y + exponents.h);
-    });
+      line(context, x(marks.line), dots.y, x(marks.line), exponents.y + exponents.h);
+    }
     if (marks.rectangle) {
       const [x0, y0, x1, y1] = marks.rectangle;
       context.fillStyle = theme.window;

@@ -3,6 +3,7 @@
 const TYPES = {
   float64: Float64Array, float32: Float32Array, int32: Int32Array, uint32: Uint32Array, int8: Int8Array, uint8: Uint8Array,
 };
+export const TAKEN_OVER = 4000; // code with which the socket is closed when another page has come
 const WAITS = [200, 500, 1000, 2000, 4000]; // ms before it tries again
 
 export class Link {
@@ -25,6 +26,7 @@ export class Link {
     this.socket.onmessage = (event) => this.on.answer(decoded(event.data));
     this.socket.onclose = (event) => {
       this.on.closed(event, this.tries);
+      if (event.code === TAKEN_OVER) return;
       setTimeout(() => this.connect(), WAITS[Math.min(this.tries++, WAITS.length - 1)]);
     };
   }

@@ -4,9 +4,9 @@ import { short, shown } from "./axes.js";
 import { Controls } from "./controls.js";
 import { DiagramData } from "./diagram_data.js";
 import { Drawing } from "./drawing.js";
-import { Link } from "./link.js";
+import { Link, TAKEN_OVER } from "./link.js";
 import { OrbitPanel } from "./orbit_panel.js";
-import { saveAs } from "./saving.js";
+import { copyLink, keep } from "./saving.js";
 import { steer } from "./steering.js";
 import { fromAddress, ViewState } from "./view_state.js";
 import { branchesOf, wordsOfWindow } from "./window_ends.js";
@@ -25,14 +25,14 @@ const controls = new Controls($("numbers"), (name, value) => {
   request();
 });
 let model = null, data = null, asked = 0, dirty = false, fitNext = true, arrived = null, branches = [], why = null;
-let timer = null, askedWhy = 0, since = 0, lines = [null, null], starts = [0, 0], failed = false, rectangle = null;
+let timer = null, askedWhy = 0, since = 0, line = null, start = 0, failed = false, rectangle = null;
 
 const link = new Link({ open: begin, answer, closed });
 
 function begin() {
   const found = fromAddress();
   if (state.view) {
-    open({ view: state.view }, { view: state.view, range: state.range, home: state.home, line: lines[0] });
+    open({ view: state.view }, { view: state.view, range: state.range, home: state.home, line });
   } else if (found) open({ view: found.view }, found);
   else open({}, null);
 }
@@ -47,6 +47,7 @@ function open(what, found) {
 
 function closed(event, tries) {
   set("computing");
+  if (event.code === TAKEN_OVER) return say(`${event.reason}. Reload this one to go on here.`, true);
   if (event.code === 1008) return say(`The program refused a request: ${event.reason}`, true);
   if (tries > 0 || !model) say("The connection is lost. If the program still runs, this page connects again by itself; if it was started again, open the address that it has printed.", true);
 }
@@ -61,8 +62,8 @@ function opened(message) {
   if (restored) {
     state.range = restored.range ?? null;
     state.home = restored.home ?? state.home;
-    lines = [restored.line ?? null, null];
-  } else lines = [null, null];
+    line = restored.line ?? null;
+  } else line = null;
   data = null;
   drawing.exponentRange = null;
   since = link.seq;
@@ -72,7 +73,7 @@ function opened(message) {
   fill();
   request();
   redraw();
-  if (lines[0] !== null) askOrbit(0);
+  askOrbit();
 }
 
 function fill() {
@@ -107,7 +108,7 @@ function request() {
   forgetWhy();
   state.write();
   fields();
-  panel.slots.forEach((one, slot) => one && askOrbit(slot));
+  if (panel.orbit) askOrbit();
 }
 
 function computing() {
@@ -182,7 +183,7 @@ function showWhy() {
 }
 
 function saved(message) {
-  saveAs(message, state);
+  keep(new Blob([message.text]), "explored.yaml");
   say("Saved");
 }
 
@@ -230,7 +231,7 @@ function picture() {
     data, certain: model.certain, colours: model.colours, view: { low: view.low, high: view.high, bottom, top },
     names: { axis: number ? `${number.label} ${number.symbol}` : view.axis, height },
     marks: {
-      grazing: view.axis === "b" ? data?.stars ?? [] : [], lines, branches, window: why && !why.reason ? why : null, stops: stopLines(), rectangle,
+      grazing: view.axis === "b" ? data?.stars ?? [] : [], line, branches, window: why && !why.reason ? why : null, stops: stopLines(), rectangle,
     },
   };
 }
@@ -277,12 +278,16 @@ function soon() {
   clickTimer = setTimeout(() => say(COMPILING), LONG);
 }
 
-function askOrbit(slot) {
-  if (lines[slot] === null || !state.view) return;
+// the column of the final picture in which the orbit is, from whose end it goes on
+function columnOfOrbit() {
+  return data && data.seq === asked && root.dataset.state === "final" ? data.column(line) : -1;
+}
+
+function askOrbit() {
+  if (line === null || !state.view) return;
   soon();
-  const column = data && data.seq === asked && root.dataset.state === "final" ? data.column(lines[slot]) : -1;
-  const value = column >= 0 && data.axis ? data.axis[column] : lines[slot];
-  link.ask("orbit", { view: state.view, value, slot, start: starts[slot], column });
+  const column = columnOfOrbit(), value = column >= 0 && data.axis ? data.axis[column] : line;
+  link.ask("orbit", { view: state.view, value, start, column });
 }
 
 const actions = {
@@ -312,34 +317,32 @@ const actions = {
     drawing.fitExponents(data);
     redraw();
   },
-  choose(value, slot, start = 0) {
+  choose(value, from = 0) {
     const column = data?.column(value) ?? -1;
-    lines[slot] = column >= 0 && data.axis ? data.axis[column] : value;
-    starts[slot] = start;
-    if (slot === 0) state.line = lines[0];
-    if (slot === 0) forgetWhy();
-    askOrbit(slot);
+    state.line = line = column >= 0 && data.axis ? data.axis[column] : value;
+    start = from;
+    forgetWhy();
+    askOrbit();
     state.write();
     redraw();
   },
   hover(value) {
     const column = value === null ? -1 : data?.column(value) ?? -1;
     $("under").textContent = column < 0 ? "" : underPointer(column);
-    if (column < 0 || !trailing() || value === null || data.axis[column] === lines[0]) return;
-    actions.choose(value, 0);
+    if (column < 0 || !trailing() || value === null || data.axis[column] === line) return;
+    actions.choose(value);
   },
   move(by) {
-    const column = data?.column(lines[0] ?? (state.view.low + state.view.high) / 2) ?? 0;
-    if (data?.axis) actions.choose(data.axis[Math.max(0, Math.min(data.columns - 1, column + by))], 0);
+    const column = data?.column(line ?? (state.view.low + state.view.high) / 2) ?? 0;
+    if (data?.axis) actions.choose(data.axis[Math.max(0, Math.min(data.columns - 1, column + by))]);
   },
   why() {
-    if (lines[0] === null) return;
+    if (line === null) return;
     say("Following the periodic orbit of this window");
-    why = { reason: "its periodic orbit is being followed", value: lines[0] };
+    why = { reason: "its periodic orbit is being followed", value: line };
     showWhy();
     soon();
-    const column = data && data.seq === asked && root.dataset.state === "final" ? data.column(lines[0]) : -1;
-    askedWhy = link.ask("window", { view: state.view, value: lines[0], start: starts[0], column });
+    askedWhy = link.ask("window", { view: state.view, value: line, start, column: columnOfOrbit() });
   },
 };
 
@@ -350,13 +353,13 @@ $("axis").addEventListener("change", (event) => {
   const number = model.numbers.find((one) => one.name === event.target.value);
   let { low, high } = number;
   if (number.log) [low, high] = [0.7, 1.4].map((part) => Number((controls.rows.get(number.name).value * part).toPrecision(4)));
-  if (lines[0] !== null) { // the number that was swept stays where the orbit is
-    state.view.numbers[state.view.axis] = lines[0];
-    controls.set(state.view.axis, lines[0], false);
+  if (line !== null) { // the number that was swept stays where the orbit is
+    state.view.numbers[state.view.axis] = line;
+    controls.set(state.view.axis, line, false);
   }
   state.begin({ ...state.view, axis: number.name, low, high });
   fitNext = true;
-  lines = [null, null];
+  line = null;
   panel.clear();
   controls.mark(number.name);
   request();
@@ -372,7 +375,7 @@ $("dynamics").addEventListener("change", (event) => {
 $("start").addEventListener("change", (event) => {
   const { follow, random, seed, ...rest } = state.view.start, value = event.target.value;
   state.view.start = { state: rest, random: { random: 4, seed: seed ?? 0 } }[value] ?? { ...rest, follow: value };
-  starts = [0, 0];
+  start = 0;
   request();
 });
 for (const id of ["low", "high"]) {
@@ -394,13 +397,11 @@ $("back").addEventListener("click", actions.back);
 $("forward").addEventListener("click", actions.forward);
 $("home").addEventListener("click", actions.home);
 $("fit").addEventListener("click", actions.fit);
-$("pan").addEventListener("click", () => $("pan").setAttribute("aria-pressed", String($("pan").getAttribute("aria-pressed") !== "true")));
 $("why").addEventListener("click", actions.why);
 $("trail").addEventListener("click", () => $("trail").setAttribute("aria-pressed", String($("trail").getAttribute("aria-pressed") !== "true")));
 $("close").addEventListener("click", () => {
   panel.clear();
-  lines = [null, null];
-  state.line = null;
+  state.line = line = null;
   forgetWhy();
   redraw();
 });
@@ -415,9 +416,9 @@ $("save").addEventListener("click", (event) => {
   const form = event.target.dataset?.form;
   if (!form) return;
   $("save").open = false;
-  if (form === "png") saveAs({ form, canvas: $("diagram") }, state);
-  else if (form === "link") saveAs({ form }, state).then(say, () => say("The browser did not allow copying", true));
-  else link.ask("save", { view: state.view, form });
+  if (form === "png") $("diagram").toBlob((picture) => keep(picture, "explored.png"));
+  else if (form === "link") copyLink(state).then(say, () => say("The browser did not allow copying", true));
+  else link.ask("save", { view: state.view });
 });
 const later = () => {
   redraw();

@@ -2,7 +2,7 @@
 
 import { drawMasses } from "./film.js";
 import { paragraph } from "./orbit_words.js";
-import { at, axes, clipped, colourOf, dot, horizontal, polyline, prepare, pressed, scales, stops, vertical } from "./small_plots.js";
+import { at, axes, clipped, dot, horizontal, polyline, prepare, pressed, scales, stops, vertical } from "./small_plots.js";
 
 const LONGEST = 12; // forcing periods of a time history; the next ones follow while the masses move
 const PERIODS_A_SECOND = 0.4;
@@ -10,7 +10,7 @@ const PERIODS_A_SECOND = 0.4;
 export class OrbitPanel {
   constructor(root) {
     this.root = root;
-    this.slots = [null, null];
+    this.orbit = null;
     this.playing = false;
     this.time = 0;
     this.canvases = Object.fromEntries(["masses", "history", "portrait", "section"].map((id) => [id, root.querySelector(`#${id}`)]));
@@ -19,16 +19,16 @@ export class OrbitPanel {
   }
 
   show(orbit) {
-    this.slots[orbit.slot] = prepared(orbit);
+    this.orbit = prepared(orbit);
     const hidden = this.root.hidden;
     this.root.hidden = false;
     if (hidden && this.playing) this.play(true);
-    this.facts();
+    this.root.querySelector("#facts").replaceChildren(paragraph(this.orbit));
     this.draw();
   }
 
   clear() {
-    this.slots = [null, null];
+    this.orbit = null;
     this.root.hidden = true;
   }
 
@@ -49,15 +49,10 @@ export class OrbitPanel {
     requestAnimationFrame(this.step);
   }
 
-  facts() {
-    const box = this.root.querySelector("#facts");
-    box.replaceChildren(...this.slots.flatMap((one, i) => (one ? [paragraph(one, i)] : [])));
-  }
-
   draw() {
-    const known = this.slots.filter(Boolean), mapping = known.some((one) => one.mapping);
+    const { mapping, contacts } = this.orbit;
     for (const id of ["masses", "history", "portrait"]) this.canvases[id].parentElement.hidden = mapping;
-    this.captions.history.textContent = known.some((one) => one.contacts)
+    this.captions.history.textContent = contacts
       ? "Time history; thick where a stop is pressed" : "Time history; circles are impacts";
     this.captions.section.textContent = mapping ? "Points of the mapping" : "Section, t = 0 mod T";
     this.masses();
@@ -66,42 +61,39 @@ export class OrbitPanel {
     this.section();
   }
 
-  get shown() {
-    return this.slots.map((one, i) => [one, i]).filter(([one]) => one && one.periods);
+  // the orbit, if it has a motion: a mapping has none
+  get moving() {
+    return this.orbit?.periods ? this.orbit : null;
   }
 
-  // forcing periods since the longest orbit that is shown began
+  // forcing periods since the orbit began
   get clock() {
-    const longest = Math.max(...this.shown.map(([one]) => one.periods));
-    return ((this.time % longest) + longest) % longest;
+    const { periods } = this.orbit;
+    return ((this.time % periods) + periods) % periods;
   }
 
   history() {
-    const shown = this.shown;
-    const { context, theme, box } = prepare(this.canvases.history);
-    if (!shown.length) return;
-    const span = Math.min(LONGEST, Math.max(...shown.map(([one]) => one.periods)));
-    const first = span * Math.floor(this.clock / span);
-    const view = { low: first, high: first + span, ...vertical(shown, "gap") };
+    const one = this.moving, { context, theme, box } = prepare(this.canvases.history);
+    if (!one) return;
+    const span = Math.min(LONGEST, one.periods), first = span * Math.floor(this.clock / span);
+    const view = { low: first, high: first + span, ...vertical(one.gap) };
     const { x, y } = scales(box, view);
-    axes(context, box, view, "t/T", names(shown)[0], theme);
+    axes(context, box, view, "t/T", names(one)[0], theme);
     clipped(context, box, () => {
-      for (const [one] of shown) stops(context, one, view, x, y, theme);
-      for (const [one, i] of shown) {
-        const repeats = one.periods === one.period; // and not a part of a longer orbit
-        const from = repeats ? one.periods * Math.floor(first / one.periods) : 0, to = repeats ? first + span : 1;
-        for (let shift = from; shift < to; shift += one.periods) this.flight(context, one, (t) => x(shift + t / one.T), y, colourOf(i, theme), theme);
-        dot(context, x(repeats ? this.clock : this.phase(one)), y(at(one, one.gap, this.phase(one))), colourOf(i, theme));
-      }
+      stops(context, one, view, x, y, theme);
+      const repeats = one.periods === one.period; // and not a part of a longer orbit
+      const from = repeats ? one.periods * Math.floor(first / one.periods) : 0, to = repeats ? first + span : 1;
+      for (let shift = from; shift < to; shift += one.periods) this.flight(context, one, (t) => x(shift + t / one.T), y, theme);
+      dot(context, x(this.clock), y(at(one, one.gap, this.clock)), theme.accent);
     });
   }
 
   // an orbit over time, once
-  flight(context, one, x, y, colour, theme) {
-    polyline(context, one.t.length, (k) => x(one.t[k]), (k) => y(one.gap[k]), colour);
-    pressed(context, one, (k) => x(one.t[k]), (k) => y(one.gap[k]), colour);
+  flight(context, one, x, y, theme) {
+    polyline(context, one.t.length, (k) => x(one.t[k]), (k) => y(one.gap[k]), theme.accent);
+    pressed(context, one, (k) => x(one.t[k]), (k) => y(one.gap[k]), theme.accent);
     context.fillStyle = theme.paper;
-    context.strokeStyle = colour;
+    context.strokeStyle = theme.accent;
     one.arrays.impact_t.forEach((t, k) => {
       context.beginPath();
       context.arc(x(t), y(one.arrays.impact_side[k] > 0 ? one.high : one.low), 3, 0, 7);
@@ -111,52 +103,40 @@ export class OrbitPanel {
   }
 
   portrait() {
-    const shown = this.shown;
-    const { context, theme, box } = prepare(this.canvases.portrait);
-    if (!shown.length) return;
-    const view = { ...horizontal(shown, "gap"), ...vertical(shown, "rate") };
+    const one = this.moving, { context, theme, box } = prepare(this.canvases.portrait);
+    if (!one) return;
+    const view = { ...horizontal(one.gap), ...vertical(one.rate) };
     const { x, y } = scales(box, view);
-    axes(context, box, view, ...names(shown), theme);
+    axes(context, box, view, ...names(one), theme);
     clipped(context, box, () => {
       context.strokeStyle = theme.faint;
       context.setLineDash([3, 3]);
-      for (const stop of shown.flatMap(([one]) => [one.low, one.high])) {
+      for (const stop of [one.low, one.high]) {
         if (stop !== null) polyline(context, 2, () => x(stop), (k) => (k ? box.y : box.y + box.h), theme.faint);
       }
       context.setLineDash([]);
-      for (const [one, i] of shown) {
-        polyline(context, one.t.length, (k) => x(one.gap[k]), (k) => y(one.rate[k]), colourOf(i, theme));
-        pressed(context, one, (k) => x(one.gap[k]), (k) => y(one.rate[k]), colourOf(i, theme));
-        const phase = this.phase(one);
-        dot(context, x(at(one, one.gap, phase)), y(at(one, one.rate, phase)), colourOf(i, theme));
-      }
+      polyline(context, one.t.length, (k) => x(one.gap[k]), (k) => y(one.rate[k]), theme.accent);
+      pressed(context, one, (k) => x(one.gap[k]), (k) => y(one.rate[k]), theme.accent);
+      dot(context, x(at(one, one.gap, this.clock)), y(at(one, one.rate, this.clock)), theme.accent);
     });
   }
 
   section() {
-    const shown = this.slots.map((one, i) => [one, i]).filter(([one]) => one?.arrays.section.length);
-    const { context, theme, box } = prepare(this.canvases.section);
-    if (!shown.length) return;
-    const view = { ...horizontal(shown, "sectionGap"), ...vertical(shown, "sectionRate") };
-    const { x, y } = scales(box, view);
-    axes(context, box, view, ...names(shown), theme);
+    const one = this.orbit, { context, theme, box } = prepare(this.canvases.section);
+    if (!one.arrays.section.length) return;
+    const view = { ...horizontal(one.sectionGap), ...vertical(one.sectionRate) };
+    const { x, y } = scales(box, view), size = one.period ? 5 : 2;
+    axes(context, box, view, ...names(one), theme);
     clipped(context, box, () => {
-      for (const [one, i] of shown) {
-        context.fillStyle = colourOf(i, theme);
-        const size = one.period ? 5 : 2;
-        for (let k = 0; k < one.sectionGap.length; k++) {
-          context.fillRect(x(one.sectionGap[k]) - size / 2, y(one.sectionRate[k]) - size / 2, size, size);
-        }
+      context.fillStyle = theme.accent;
+      for (let k = 0; k < one.sectionGap.length; k++) {
+        context.fillRect(x(one.sectionGap[k]) - size / 2, y(one.sectionRate[k]) - size / 2, size, size);
       }
     });
   }
 
   masses() {
-    drawMasses(this.canvases.masses, this.shown, (one) => this.phase(one));
-  }
-
-  phase(one) {
-    return this.clock % one.periods;
+    if (this.moving) drawMasses(this.canvases.masses, this.orbit, this.clock);
   }
 }
 
@@ -178,6 +158,6 @@ function prepared(orbit) {
   };
 }
 
-function names([[one]]) {
+function names(one) {
   return one.gapIsFirst ? ["x1", "v1"] : ["gap", "velocity of the gap"];
 }

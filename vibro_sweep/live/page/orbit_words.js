@@ -2,9 +2,8 @@
 
 import { short, shown } from "./axes.js";
 
-export function paragraph(one, i) {
+export function paragraph(one) {
   const p = document.createElement("p"), head = document.createElement("b");
-  head.className = i ? "second" : "first";
   head.textContent = `${one.axis} = ${shown(one.value)}: `;
   const exponents = [...one.arrays.exponents].map((v, k) => `${short(v, 4)} ± ${short(one.arrays.errors[k], 1)}`);
   const kind = one.period ? `period ${one.period}` : one.arrays.exponents[0] > one.certain * one.arrays.errors[0] ? "chaotic" : "no period found";

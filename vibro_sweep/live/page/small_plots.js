@@ -19,20 +19,20 @@ export function prepare(canvas, pad = 0) {
   return { context, theme, box };
 }
 
-function extent(shown, name) {
+function extent(values) {
   let low = Infinity, high = -Infinity;
-  for (const [one] of shown) for (const v of one[name]) [low, high] = [Math.min(low, v), Math.max(high, v)];
+  for (const v of values) [low, high] = [Math.min(low, v), Math.max(high, v)];
   const half = Math.max(0.55 * (high - low), 0.01 * Math.max(Math.abs(low), Math.abs(high)), 1e-3), centre = (low + high) / 2;
   return [centre - half, centre + half];
 }
 
-export function horizontal(shown, name) {
-  const [low, high] = extent(shown, name);
+export function horizontal(values) {
+  const [low, high] = extent(values);
   return { low, high };
 }
 
-export function vertical(shown, name) {
-  const [bottom, top] = extent(shown, name);
+export function vertical(values) {
+  const [bottom, top] = extent(values);
   return { bottom, top };
 }
 
@@ -105,10 +105,6 @@ export function dot(context, x, y, colour) {
   context.beginPath();
   context.arc(x, y, 4, 0, 7);
   context.fill();
-}
-
-export function colourOf(i, theme) {
-  return i ? theme.second : theme.accent;
 }
 
 export function at(one, values, phase) {

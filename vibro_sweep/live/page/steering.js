@@ -1,4 +1,4 @@
-// Pointer, wheel and keys on the diagram: zoom, pan, choose an orbit.
+// Pointer, wheel and keys on the diagram: zoom, move, choose an orbit.
 
 const CLICK = 5; // pixels that a click may move
 const ZOOM = 1.0015; // a unit of the wheel
@@ -29,8 +29,7 @@ export function steer(canvas, actions) {
   canvas.addEventListener("pointerdown", (event) => {
     if (!ready() || event.button > 1 || !inDots(place(event))) return;
     canvas.setPointerCapture(event.pointerId);
-    const pan = event.button === 1 || document.getElementById("pan").getAttribute("aria-pressed") === "true";
-    down = { at: place(event), pan, view: { ...state.view }, range: [...state.range], moved: false, pushed: false };
+    down = { at: place(event), pan: event.button === 1 || event.shiftKey, view: { ...state.view }, range: [...state.range], moved: false, pushed: false };
   });
   canvas.addEventListener("pointermove", (event) => {
     if (!down) return ready() && actions.hover(inDots(place(event)) ? value(place(event)[0]) : null);
@@ -50,7 +49,7 @@ export function steer(canvas, actions) {
     const [x, y] = place(event), [x0, y0] = down.at, { moved, pan } = down;
     down = null;
     actions.setRectangle(null);
-    if (!moved) return actions.choose(value(x), event.shiftKey ? 1 : 0, nearest(actions.data(), value(x), height(y)));
+    if (!moved) return actions.choose(value(x), nearest(actions.data(), value(x), height(y)));
     if (pan) return;
     const { dots } = drawing.place, clamp = (v) => Math.max(dots.x, Math.min(dots.x + dots.w, v));
     const across = [value(clamp(x0)), value(clamp(x))].sort((a, b) => a - b);
@@ -92,7 +91,6 @@ export function steer(canvas, actions) {
     Home: actions.home,
     f: actions.fit,
     w: actions.why,
-    p: () => document.getElementById("pan").click(),
     o: () => document.getElementById("trail").click(),
     "+": () => zoom(0.5, state.line ?? (state.view.low + state.view.high) / 2, (state.range[0] + state.range[1]) / 2),
     "-": () => zoom(2, state.line ?? (state.view.low + state.view.high) / 2, (state.range[0] + state.range[1]) / 2),
