@@ -352,7 +352,7 @@ def pictures() -> Iterator[str]:
         "scene's `picture`, else the first kind that the file can show. The [gallery](../auto_gallery/index.rst) has\n"
         "examples, and [the command](commands.md#vibro-sweep-plot) all options.",
     )
-    rows = ((f"`{kind}`", summary(one.draw.__doc__), summary(one.shows.__doc__)) for kind, one in KINDS.items())
+    rows = ((f"`{kind}`", summary(one.panels.__doc__), summary(one.shows.__doc__)) for kind, one in KINDS.items())
     yield from table(("kind", "what it shows", "needs"), rows)
     yield "`--at NAME=VALUE` draws single orbits at that value of the sweep, of the kinds"
     yield f"{listed(kind for kind, one in KINDS.items() if one.of_orbits)}."

@@ -78,7 +78,7 @@ if TYPE_CHECKING:
     from vibro_sweep.oscillator.grazing import grazing
     from vibro_sweep.oscillator.oscillator import Oscillator, System
     from vibro_sweep.plotting import PlotError
-    from vibro_sweep.plotting.front import plot
+    from vibro_sweep.plotting.plot import plot
     from vibro_sweep.scene import SceneError, load_scene
 else:
     _HOME = {
@@ -104,7 +104,7 @@ else:
         "lyapunov": "analysis.single.orbit",
         "open": "driver.any_file",
         "periodic_orbit": "analysis.periodic.finding",
-        "plot": "plotting.front",
+        "plot": "plotting.plot",
         "run": "driver.run",
         "simulate": "analysis.single.orbit",
         "sticking_onset": "analysis.branches.sticking",

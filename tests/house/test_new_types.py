@@ -59,6 +59,45 @@ other = swept(mass, {"b": [0.3]}).isel(b=0)
 special = [float(np.abs(data.x1 - other.x1).max()), seesaw.named("pendulum", **seesaw.arguments) == seesaw]
 """
 )
+PICTURE = (
+    SWEEP
+    + """
+import vibro_sweep.plotting
+from matplotlib.figure import Figure
+from vibro_sweep.scene import json_schema
+data = swept(system, {"b": [2.0, 3.0, 4.0]})
+figure = vs.plot(data, "periods", xlim=(2, 4), output="periods.svg")
+into = Figure().subplots()
+vs.plot(data, "periods", into)
+special = [figure.axes[0].get_xlabel(), len(figure.axes[0].lines), len(into.lines), into.get_legend() is not None]
+special += [vibro_sweep.plotting.kinds(data)[-1], "periods" in str(json_schema())]
+"""
+)
+PERIODS = '''"""The periods of orbits over a parameter."""
+
+from vibro_sweep.plotting.figure import Panels
+from vibro_sweep.plotting.kind import picture
+from vibro_sweep.plotting.labels import legend_below
+from vibro_sweep.plotting.sweep_result import Result
+
+
+def shows(result: Result) -> bool:
+    """A sweep over one key; section."""
+    return len(result.sweep) == 1 and "period" in result
+
+
+@picture(shows)
+def periods(result: Result) -> Panels:
+    """The period of each orbit."""
+    ((key, values),) = result.sweep.items()
+
+    def draw(axes):
+        lines = axes[0, 0].plot(values, result.array("period")[:, 0], "o", label="period")
+        axes[0, 0].set(xlabel=result.axis(key), ylabel="period")
+        legend_below(axes, lines, 1)
+
+    return Panels(result.title("Periods"), 3.0, draw)
+'''
 TABLE, TESTS = "tables/bifurcations.py", "engine/continuation/branch_tests.py"
 PENDULUM = '''"""A pendulum that strikes walls: one number, its length."""
 
@@ -131,6 +170,14 @@ def test_an_observable_is_a_row_and_a_line(tmp_path):
 def test_a_model_is_one_file(tmp_path):
     error, same = with_edits(tmp_path, [], MODEL, [("oscillator/models/pendulum.py", PENDULUM)])
     assert error < 1e-9 and same
+
+
+def test_a_picture_is_a_function_and_a_row(tmp_path):
+    table, row = "tables/picture_kinds.py", '    "convergence": "convergence.convergence",\n'
+    edits = [(table, row, row + '    "periods": "periods.periods",\n')]
+    label, *drawn, last, in_schema = with_edits(tmp_path, edits, PICTURE, [("plotting/periods.py", PERIODS)])
+    assert label == "clearance $b$" and drawn == [1, 1, True] and last == "periods" and in_schema
+    assert (tmp_path / "periods.svg").stat().st_size > 1000
 
 
 def test_a_speed_that_an_impact_passes_is_a_row_and_a_line(tmp_path):

@@ -197,14 +197,13 @@ def plot_command(
 
     Of a sweep, `vibro-sweep explore FILE.h5` shows the same diagram as a page with sliders.
     """
-    values = dict(key_and_value(one) for one in at or ())
-    pairs = [
-        pair and tuple(number_in(f"--{name}", text) for text in pair)
-        for name, pair in (("xlim", xlim), ("ylim", ylim), ("size", size))
-    ]
-    options = (values, variable, *pairs, dpi and number_in("--dpi", dpi))
-    beside = {"width": width and number_in("--width", width), "windows": windows, "over": over, "relative": relative}
-    _draw(file, output, kind, overwrite, False, *options, **beside)
+    options = {"at": dict(key_and_value(text) for text in at or ()), "variable": variable}
+    for name, pair in (("xlim", xlim), ("ylim", ylim), ("size", size)):
+        options[name] = pair and tuple(number_in(f"--{name}", text) for text in pair)
+    for name, text in (("width", width), ("dpi", dpi)):
+        options[name] = text and number_in(f"--{name}", text)
+    options |= {"windows": windows, "over": over, "relative": relative}
+    _draw(file, output, kind, overwrite, False, **options)
 
 
 @app.command()
@@ -324,12 +323,12 @@ def explore_command(
     explore(file, port, not no_browser)
 
 
-def _draw(file: Path, output: Path | None, kind: str | None, overwrite: bool, quiet: bool, *options, **beside):
+def _draw(file: Path, output: Path | None, kind: str | None, overwrite: bool, quiet: bool, **options):
     from vibro_sweep.files.file_errors import StoreError
-    from vibro_sweep.plotting import PlotError, PlotOptions, plot
+    from vibro_sweep.plotting import PlotError, pictures
 
     all_is_imported()
     with input_errors(PlotError, StoreError), interrupt.tidied_up(), messages(quiet):
-        pictures = plot(file, output, kind, overwrite, PlotOptions(*options, **beside))
+        written = pictures(file, output, kind, overwrite, **options)
     if not quiet:
-        say("\n".join(str(picture) for picture in pictures))
+        say("\n".join(str(picture) for picture in written))

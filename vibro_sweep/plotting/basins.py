@@ -5,6 +5,8 @@ from matplotlib.colors import to_rgb
 from matplotlib.patches import Patch
 
 from vibro_sweep.plotting.families import KINDS, describe, kind, named
+from vibro_sweep.plotting.figure import Panels
+from vibro_sweep.plotting.kind import picture
 from vibro_sweep.plotting.labels import legend_below
 from vibro_sweep.plotting.style import INK, NOT_COMPUTED, edges, equation, marked
 from vibro_sweep.plotting.sweep_result import Point, Result
@@ -22,7 +24,8 @@ def shows(result: Result) -> bool:
     return len(result.sweep) == 2 and all(key.startswith("start_") for key in result.sweep) and "average" in result
 
 
-def basins(result: Result):
+@picture(shows)
+def basins(result: Result) -> Panels:
     """The plane of initial states, each in the colour of the attractor that its orbit reaches, as the file numbers it.
 
     A file without these numbers (not complete) shows of which kind the attractors are.
@@ -35,24 +38,26 @@ def basins(result: Result):
     stored = "x1" in result and "phase" not in result
     marks = "section points" if stored else "mean of the section points"
     note += f"\nmarks: {marks} of each attractor, projected onto this plane" if numbered else ""
-    fig = result.page(5.8, result.title("Basins of attraction" + _rest(result)) + note)
-    ax = fig.subplots()
     picture = np.full((*label.shape, 3), to_rgb(NOT_COMPUTED))
     for number, (colour, _) in named.items():
         picture[label == number] = colour
-    image = picture[np.ix_(columns, rows)].transpose(1, 0, 2)
-    ax.pcolorfast(edges(x[columns]), edges(y[rows]), image)
-    ax.set(xlabel=result.axis(x_key), ylabel=result.axis(y_key))
-    handles = [Patch(color=colour) for colour, _ in named.values()]
-    if numbered:
-        frame = ax.get_xlim(), ax.get_ylim()
-        for i, (number, (colour, _)) in enumerate(named.items()):
-            if number not in (0, OTHERS):
-                _mark(ax, result, label == number, MARKERS[i], stored)
-                handles[i] = marked(colour, MARKERS[i])
-        ax.set(xlim=frame[0], ylim=frame[1])
-    legend_below(fig, handles, 2, labels=[text for _, text in named.values()])
-    return fig
+
+    def draw(axes):
+        ax = axes[0, 0]
+        image = picture[np.ix_(columns, rows)].transpose(1, 0, 2)
+        ax.pcolorfast(edges(x[columns]), edges(y[rows]), image)
+        ax.set(xlabel=result.axis(x_key), ylabel=result.axis(y_key))
+        handles = [Patch(color=colour) for colour, _ in named.values()]
+        if numbered:
+            frame = ax.get_xlim(), ax.get_ylim()
+            for i, (number, (colour, _)) in enumerate(named.items()):
+                if number not in (0, OTHERS):
+                    _mark(ax, result, label == number, MARKERS[i], stored)
+                    handles[i] = marked(colour, MARKERS[i])
+            ax.set(xlim=frame[0], ylim=frame[1])
+        legend_below(ax, handles, 2, labels=[text for _, text in named.values()])
+
+    return Panels(result.title("Basins of attraction" + _rest(result)) + note, 5.8, draw)
 
 
 def _mark(ax, result, members, marker, stored):

@@ -8,6 +8,7 @@ from matplotlib.lines import Line2D
 from vibro_sweep.checks.refusals import shown
 from vibro_sweep.plotting import joined, sweeps
 from vibro_sweep.plotting.decades import scale_of
+from vibro_sweep.plotting.figure import Panels
 from vibro_sweep.plotting.labels import arrange, legend_below, name_beside
 from vibro_sweep.plotting.plot_options import PlotOptions
 from vibro_sweep.plotting.ragged import RaggedFile, sweep_below
@@ -26,7 +27,7 @@ def variables(file: RaggedFile) -> tuple[str, ...]:
     return (*_sections(file), "impact_speed", "multiplier", "stop_distance")
 
 
-def branches(path, options: PlotOptions, ax=None):
+def branches(path, options: PlotOptions) -> Panels:
     """The diagram of a file of branches; over a sweep where the options name one. Raises PlotError."""
     file = RaggedFile(path, BRANCHES)
     name = options.variable or "x1"
@@ -36,10 +37,11 @@ def branches(path, options: PlotOptions, ax=None):
         raise PlotError(f"{file.name}: nothing to show, it has no branches")
     if options.over is not None and "branch_sections" not in file.arrays:
         raise PlotError(f"{file.name}: a file of windows is not drawn over a sweep; draw the sweep, with these windows")
-    fig = None
-    if ax is None:
-        fig = options.page(5.0, f"Branches of periodic orbits: {file.title}")
-        ax = fig.subplots()
+    title = f"Branches of periodic orbits: {file.title}"
+    return Panels(title, 5.0, lambda axes: _draw(axes[0, 0], file, name, options))
+
+
+def _draw(ax, file: RaggedFile, name: str, options: PlotOptions) -> None:
     if options.over is not None:
         _sweep(ax, options, file, name)
     values = values_of(file, name)
@@ -60,13 +62,12 @@ def branches(path, options: PlotOptions, ax=None):
         ax.axhline(1, color=INK, lw=0.5)
         ax.set_ylim(0, min(1.05 * np.nanmax(values), MOST))
     there = [(kind, place) for kind, place in marks if all(map(_inside, place, (ax.get_xlim(), ax.get_ylim())))]
-    _legend(fig or ax, ax, {kind for kind, _ in there})
+    _legend(ax, {kind for kind, _ in there})
     arrange(ax.figure)
     there.sort(key=lambda mark: mark[0] != "sticking")  # where many accumulate, what they lead to is named
     y = np.reshape(values, (len(values), -1))
     lines = np.column_stack([np.repeat(file[file.parameters[0]], y.shape[1]), y.ravel()])
     name_beside(ax, [SPECIAL[kind][0] for kind, _ in there], [place for _, place in there], lines)
-    return fig or ax.figure
 
 
 def _inside(values, limits):
@@ -154,16 +155,13 @@ def _places(file: RaggedFile) -> np.ndarray:
     return point
 
 
-def _legend(where, ax, there: set[str]) -> None:
+def _legend(ax, there: set[str]) -> None:
     handles = [Line2D([], [], color=INK, lw=1.2, label="stable")]
     handles.append(Line2D([], [], color=INK, lw=0.7, ls=DASHES, label="unstable"))
     handles += [
         Line2D([], [], label=f"{SPECIAL[k][0]} {SPECIAL[k][1]}", **special_mark(k)) for k in SPECIAL if k in there
     ]
-    if where is ax:
-        ax.legend(handles=handles, loc="best", frameon=True)
-    else:
-        legend_below(where, handles, 5)
+    legend_below(ax, handles, 5)
 
 
 def _sweep(ax, options: PlotOptions, file: RaggedFile, name: str) -> None:

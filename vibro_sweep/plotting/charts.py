@@ -1,14 +1,13 @@
 """Files of bifurcation curves as charts in two parameters: alone, or over the plane of a sweep."""
 
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from vibro_sweep.checks.refusals import shown
 from vibro_sweep.plotting import planes
-from vibro_sweep.plotting.drawn_curves import Drawn, draw, handles, name_points, scale
-from vibro_sweep.plotting.labels import arrange, legend_below
+from vibro_sweep.plotting.drawn_curves import Drawn, chart_of, draw, frame_of, handles, name_points
+from vibro_sweep.plotting.figure import Panels
 from vibro_sweep.plotting.plot_options import PlotOptions
 from vibro_sweep.plotting.ragged import RaggedFile, sweep_below
 from vibro_sweep.plotting.relative import axis_label, check_relative
@@ -19,36 +18,21 @@ from vibro_sweep.tables.file_columns import CHART
 NAMED = 14  # points of codimension two that are named over a plane
 
 
-def chart(path: str | Path, options: PlotOptions, ax=None):
+def chart(path: str | Path, options: PlotOptions) -> Panels:
     """The chart of a file of curves, over a plane where the options name one. Raises PlotError."""
     file = RaggedFile(path, CHART)
     if not len(file["branch_type"]):
         raise PlotError(f"{file.name}: nothing to show, it has no curves")
     if options.over is not None:
-        return _over(file, options, ax)
+        return _over(file, options)
     if options.variable is not None:
         raise PlotError(
             f"variable {shown(options.variable)} is not allowed; a chart has one where it lies over a plane"
         )
     names = file.parameters
     curves = drawn(file, names, options.relative)
-    fig = None
-    if ax is None:
-        fig = options.page(5.0, f"Bifurcation curves: {file.title}")
-        ax = fig.subplots()
-    scale(ax, curves, names)
-    draw(ax, curves)
-    ax.set(xlim=options.xlim or ax.get_xlim(), ylim=options.ylim or ax.get_ylim())
-    found = handles(curves, _frame(ax))
-    across, up = (axis_label(name, options.relative, file.unit(name)) for name in names)
-    ax.set(xlabel=across, ylabel=up)
-    if fig is None:
-        ax.legend(handles=found, loc="best", frameon=True)
-    else:
-        legend_below(fig, found, 6, grow=options.size is None, columnspacing=1.2)
-    arrange(ax.figure)
-    name_points(ax, curves)
-    return fig or ax.figure
+    labels = [axis_label(name, options.relative, file.unit(name)) for name in names]
+    return chart_of(f"Bifurcation curves: {file.title}", 5.0, curves, names, labels, options)
 
 
 def drawn(file: RaggedFile, names: list[str], relative: bool = False) -> list[Drawn]:
@@ -75,9 +59,9 @@ def drawn(file: RaggedFile, names: list[str], relative: bool = False) -> list[Dr
     return result
 
 
-def _over(file: RaggedFile, options: PlotOptions, ax):
+def _over(file: RaggedFile, options: PlotOptions) -> Panels:
     """Over the plane of a sweep in the same two numbers."""
-    with Result(sweep_below(options.over), replace(options, over=None), ax) as result:
+    with Result(sweep_below(options.over), options.replace(over=None)) as result:
         if sorted(result.sweep) != sorted(file.parameters) or not planes.shows(result):
             raise PlotError(f"over: {result.path} is not a plane over {' and '.join(file.parameters)}")
         if options.variable is not None and options.variable not in planes.variables(result):
@@ -93,8 +77,4 @@ def _over(file: RaggedFile, options: PlotOptions, ax):
         def named(panel):
             return name_points(panel, curves, NAMED)
 
-        return planes.plane(result, planes.Overlay(over, lambda panel: handles(curves, _frame(panel)), named))
-
-
-def _frame(ax):
-    return ax.get_xlim(), ax.get_ylim()
+        return planes.plane(result, planes.Overlay(over, lambda panel: handles(curves, frame_of(panel)), named))

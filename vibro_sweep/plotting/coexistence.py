@@ -8,6 +8,8 @@ from matplotlib.collections import LineCollection, PolyCollection
 
 from vibro_sweep.oscillator.catalogue import BY_NAME
 from vibro_sweep.plotting.families import KINDS, MARKERS, kind, named
+from vibro_sweep.plotting.figure import Panels
+from vibro_sweep.plotting.kind import picture
 from vibro_sweep.plotting.labels import arrange, legend_below, overlap
 from vibro_sweep.plotting.style import at_section, edges, marked, type_size
 from vibro_sweep.plotting.sweep_result import Point, Result
@@ -32,26 +34,30 @@ def shows(result: Result) -> bool:
     return len(result.sweep) == 1 and len(result.starts) > 1 and "attractor" in result
 
 
-def coexistence(result: Result):
+@picture(shows)
+def coexistence(result: Result) -> Panels:
     """Over the parameter: section points of each attractor, or their mean; below, the starts' shares, stacked."""
     ((key, values),) = result.sweep.items()
     order = np.argsort(values)  # a sweep may run downwards; an axis does not
     values, found = values[order], _shares(result, order)
-    fig = result.page(5.8, result.title(f"Coexisting attractors; {len(result.starts)} starts at each value"))
-    above, below = axes = fig.subplots(2, sharex=True, height_ratios=(1.6, 1))
-    _points(above, result, values, found)
-    _stacks(below, values, found)
-    if key == "b":
-        mark_grazing(axes, result, values[0], values[-1])
-    below.set(xlim=edges(values)[[0, -1]], ylim=(0, 1), xlabel=result.axis(key), ylabel=BY_NAME["share"].label)
-    there = {one.kind for one in found}
-    shown = [(which, colour) for which, (_, colour) in KINDS.items() if which in there]
-    marks = {named(which, result.meeting): marked(colour, MARKERS.get(which, "")) for which, colour in shown}
-    marks |= {line.get_label(): line for line in above.lines if line.get_gid() == "grazing"}
-    legend_below(fig, list(marks.values()), 3, labels=list(marks))
-    fig.align_ylabels(axes)
-    _name_windows(below, values, found)
-    return fig
+
+    def draw(axes):
+        above, below = axes[:, 0]
+        _points(above, result, values, found)
+        _stacks(below, values, found)
+        if key == "b":
+            mark_grazing((above, below), result, values[0], values[-1])
+        below.set(xlim=edges(values)[[0, -1]], ylim=(0, 1), xlabel=result.axis(key), ylabel=BY_NAME["share"].label)
+        there = {one.kind for one in found}
+        shown = [(which, colour) for which, (_, colour) in KINDS.items() if which in there]
+        marks = {named(which, result.meeting): marked(colour, MARKERS.get(which, "")) for which, colour in shown}
+        marks |= {line.get_label(): line for line in above.lines if line.get_gid() == "grazing"}
+        legend_below(axes, list(marks.values()), 3, labels=list(marks))
+        above.figure.align_ylabels(axes[:, 0])
+        _name_windows(below, values, found)
+
+    title = result.title(f"Coexisting attractors; {len(result.starts)} starts at each value")
+    return Panels(title, 5.8, draw, 2, grid={"sharex": True, "height_ratios": (1.6, 1)})
 
 
 def _shares(result, order) -> list[Share]:

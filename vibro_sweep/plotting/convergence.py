@@ -3,6 +3,8 @@
 import numpy as np
 
 from vibro_sweep.plotting.drawn_motion import legend
+from vibro_sweep.plotting.figure import Panels
+from vibro_sweep.plotting.kind import picture
 from vibro_sweep.plotting.style import DASHES, INK, exponent, exponent_colour, exponents_name, limits
 from vibro_sweep.plotting.sweep_result import Result
 
@@ -12,14 +14,19 @@ def shows_convergence(result: Result) -> bool:
     return "lyapunov_running" in result
 
 
-def convergence(result: Result):
+@picture(shows_convergence, of_orbits=True)
+def convergence(result: Result) -> Panels:
     """The spectrum as it was computed, period by period: lambda_1 beside zero, and below all of them. Up to two orbits.
 
     Where the file has them: a dashed line at each final value, around it a band in which zero would not differ from it.
     """
     points = result.points(2)
-    fig = result.page(5.2, result.title("Convergence of the Lyapunov exponents"))
-    grid = fig.subplots(2, len(points), sharex=True, sharey="row", squeeze=False, height_ratios=(1.2, 1))
+    grid = {"sharex": True, "sharey": "row", "height_ratios": (1.2, 1)}
+    title = result.title("Convergence of the Lyapunov exponents")
+    return Panels(title, 5.2, lambda axes: _draw(axes, result, points), 2, len(points), grid)
+
+
+def _draw(grid, result, points) -> None:
     periods = result.coordinate("elapsed")
     settled = slice(len(periods) // 10, None)
     for (largest, spectrum), point in zip(grid.T, points, strict=True):
@@ -44,9 +51,7 @@ def convergence(result: Result):
     unit = result.unit("lyapunov_running")
     grid[0, 0].set_ylabel(exponents_name(1, unit))
     grid[1, 0].set_ylabel(exponents_name("i", unit))
-    legend(fig)
-    fig.align_ylabels(grid[:, 0])
-    return fig
+    legend(grid)
 
 
 def _final_values(panels, result, point) -> str:

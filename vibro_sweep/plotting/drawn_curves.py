@@ -3,12 +3,13 @@
 from collections import Counter
 from typing import NamedTuple
 
-import matplotlib as mpl
 import numpy as np
 from matplotlib import patheffects
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from vibro_sweep.plotting.decades import scale_of
+from vibro_sweep.plotting.figure import Panels
 from vibro_sweep.plotting.labels import arrange, legend_below, name_beside
 from vibro_sweep.plotting.plot_options import PlotOptions
 from vibro_sweep.plotting.style import INK, axis_name, with_unit
@@ -36,21 +37,33 @@ class Drawn(NamedTuple):
     period: int = 1
 
 
-def plot_curves(curves: list[Drawn], names: tuple[str, str], system=None, width: float | None = None):
-    """All curves of a system in one panel, so many mm wide. Returns a matplotlib Figure."""
+def plot_curves(curves: list[Drawn], names: tuple[str, str], system=None, width: float | None = None) -> Figure:
+    """All curves of a system in one panel, so many mm wide."""
+    known = getattr(system, "described", {})  # a Family has numbers without units
+    labels = [with_unit(axis_name(name), known[name].units if name in known else "1", system) for name in names]
     options = PlotOptions(width=width)
-    with mpl.rc_context(options.style):
-        fig = options.page(4.2, "bifurcation curves")
-        ax = fig.subplots()
+    return options.draw(chart_of("bifurcation curves", 4.2, curves, names, labels, options))[0].figure
+
+
+def chart_of(title: str, height: float, curves: list[Drawn], names, labels, options: PlotOptions) -> Panels:
+    """Curves in the plane of two numbers, with their legend and the names of their points."""
+
+    def draw_all(axes):
+        ax = axes[0, 0]
         scale(ax, curves, names)
         draw(ax, curves)
-        known = getattr(system, "described", {})  # a Family has numbers without units
-        labels = [with_unit(axis_name(name), known[name].units if name in known else "1", system) for name in names]
+        ax.set(xlim=options.xlim or ax.get_xlim(), ylim=options.ylim or ax.get_ylim())
         ax.set(xlabel=labels[0], ylabel=labels[1])
-        legend_below(fig, handles(curves), 6, grow=True)
-        arrange(fig)
+        legend_below(ax, handles(curves, frame_of(ax)), 6, grow=options.size is None, columnspacing=1.2)
+        arrange(ax.figure)
         name_points(ax, curves)
-        return fig
+
+    return Panels(title, height, draw_all)
+
+
+def frame_of(ax) -> tuple[tuple[float, float], tuple[float, float]]:
+    """((left, right), (low, high)) of a picture."""
+    return ax.get_xlim(), ax.get_ylim()
 
 
 def scale(ax, curves: list[Drawn], names) -> None:

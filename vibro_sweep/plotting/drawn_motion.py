@@ -81,13 +81,13 @@ def arrows(ax: Axes, t, x, y, times) -> None:
         ax.annotate("", **ends, arrowprops=arrow, zorder=2.5, gid="time")
 
 
-def legend(fig) -> None:
-    """All that is labelled in its panels, each once, and what the arrows mean."""
-    named = {}
-    for ax in fig.axes:
+def legend(axes) -> None:
+    """All that is labelled in these axes, each once, and what the arrows mean."""
+    named, axes = {}, np.ravel(axes)
+    for ax in axes:
         handles, labels = ax.get_legend_handles_labels()
         named = dict(zip(labels, handles, strict=True)) | named
-    if any(text.get_gid() == "time" for ax in fig.axes for text in ax.texts):
+    if any(text.get_gid() == "time" for ax in axes for text in ax.texts):
         named["direction of time"] = Line2D([], [], color=INK, lw=0, marker=">", markersize=5)
     if named:
-        legend_below(fig, list(named.values()), len(named), labels=list(named))
+        legend_below(axes, list(named.values()), len(named), labels=list(named))

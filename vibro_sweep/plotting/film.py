@@ -8,8 +8,10 @@ import numpy as np
 from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
 from matplotlib.patches import Rectangle
 
-from vibro_sweep.plotting.orbit_pictures import displacements
-from vibro_sweep.plotting.page import Picture, page
+from vibro_sweep.plotting.figure import Panels, Picture
+from vibro_sweep.plotting.kind import picture
+from vibro_sweep.plotting.orbit_pictures import displacements, shows_trajectory
+from vibro_sweep.plotting.plot_options import PlotOptions
 from vibro_sweep.plotting.stored_motion import stored_motion
 from vibro_sweep.plotting.style import DASHES, FAINT, INK, SECTION, symbol
 from vibro_sweep.plotting.sweep_result import PlotError, Result
@@ -46,7 +48,7 @@ class Film(Picture):
 
 
 class _OfAnOrbit(Film):
-    def begin(self, motion: Motion, masses: Sequence[str], unit: str) -> "_OfAnOrbit":
+    def begin(self, motion: Motion, masses: Sequence[str], unit: str) -> None:
         """motion : without gaps, its t in forcing periods; masses : names of the positions that are shown; unit : of
         the gap"""
         self.times, (name, rate) = motion.t, motion.names
@@ -81,7 +83,6 @@ class _OfAnOrbit(Film):
         self.lines = [left.plot([], [], color=INK, lw=1.2)[0], right.plot([], [], color=INK, lw=1.2)[0]]
         self.dots = [ax.plot([], [], "o", color=SECTION, markersize=5)[0] for ax in (left, right)]
         self.show(FRAMES - 1)  # what a still picture has
-        return self
 
     def show(self, i: int) -> None:
         at = round(i / (FRAMES - 1) * (len(self.times) - 1))
@@ -96,19 +97,23 @@ class _OfAnOrbit(Film):
             dot.set_data([x[at]], [y[at]])
 
 
-def film(result: Result) -> Film:
+@picture(shows_trajectory, of_orbits=True)
+def film(result: Result) -> Panels:
     """The masses between their stops, time history and phase portrait of an orbit; moving in a .gif or .mp4."""
-    if result.ax is not None:
-        raise PlotError("ax: a film has a figure of its own")
     point = result.points(1)[0]
     title = f"{result.title('Film')}\n{point.label}" if point.label else result.title("Film")
-    moving = result.options.page(HEIGHT, title, _OfAnOrbit)
-    moving.resolution = result.options.dpi or moving.resolution
     motion = stored_motion(result, point).joined()
-    return moving.begin(motion, [name for name in displacements(result) if name != "gap"], result.unit(motion.names[0]))
+    masses = [name for name in displacements(result) if name != "gap"]
+
+    def draw(figure):
+        figure.resolution = result.options.dpi or figure.resolution
+        figure.begin(motion, masses, result.unit(motion.names[0]))
+
+    return Panels(title, HEIGHT, draw, figure=_OfAnOrbit)
 
 
 def film_of(motion: Motion, title: str) -> Film:
     """A film of evenly sampled motion; t in forcing periods."""
     masses = [name for name in motion.states if name.startswith("x")]
-    return page(HEIGHT, title, kind=_OfAnOrbit).begin(motion, masses, "")
+    panels = Panels(title, HEIGHT, lambda figure: figure.begin(motion, masses, ""), figure=_OfAnOrbit)
+    return PlotOptions().draw(panels)[0].figure

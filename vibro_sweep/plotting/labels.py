@@ -3,6 +3,7 @@
 import numpy as np
 from matplotlib import patheffects
 
+from vibro_sweep.plotting.figure import Picture
 from vibro_sweep.plotting.style import type_size
 
 GAP = 2.5  # points (1/72 inch) between a name and what is beside it
@@ -116,24 +117,29 @@ def thin_ticks(bar, first: float = 0.0) -> None:
         bar.ax.xaxis.get_major_formatter().set_offset_string(power)
 
 
-def legend_below(fig, handles, most: int, grow: bool = False, **style) -> None:
-    """A legend below everything, in so many columns, at most, as the page has room for.
+def legend_below(axes, handles, most: int, grow: bool = False, **style) -> None:
+    """A legend below all axes, in so many columns, at most, as the page has room for; within those of the caller.
 
     style : options of matplotlib's legend
 
     grow : the page becomes higher by all but the first two of its rows; a narrow page does, unless its size is given
     """
+    ax = np.ravel(axes)[0]
+    fig = ax.figure
     if not handles:
         return
-    narrow = getattr(fig, "narrow", False)
+    if not isinstance(fig, Picture):  # the figure around them is not ours; a legend that they have stays
+        if old := ax.get_legend():
+            ax.add_artist(old)
+        ax.legend(handles=handles, **style | {"loc": "best", "frameon": True})
+        return
+    narrow = fig.narrow
     grow = fig.grows if narrow else grow
     sizes = (None,) if grow or narrow else SIZES
     for size in sizes:
         for columns in range(min(most, len(handles)), 0, -1):
             where = {"loc": "outside lower center", "ncols": columns, "fontsize": size}
             legend = fig.legend(handles=handles, **where | style)
-            if legend is None:  # within the caller's axes
-                return
             extent = legend.get_window_extent()
             if columns == 1 or extent.width <= fig.bbox.width:
                 break

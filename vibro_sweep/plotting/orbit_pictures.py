@@ -5,6 +5,8 @@ from matplotlib.ticker import MaxNLocator
 
 from vibro_sweep.plotting import rests
 from vibro_sweep.plotting.drawn_motion import contacts, legend, levels, portrait, walls
+from vibro_sweep.plotting.figure import Panels
+from vibro_sweep.plotting.kind import picture
 from vibro_sweep.plotting.stored_motion import GAP, gap_of, stored_motion
 from vibro_sweep.plotting.style import (
     DASHES,
@@ -42,16 +44,36 @@ def shows_section(result: Result) -> bool:
     return "x1" in result or "v1" in result
 
 
-def _portraits(result, what):
-    """A page with a panel for each orbit: (figure, [(axes, point)])."""
+def _portraits(result, what, draw) -> Panels:
+    """A panel for each orbit; draw(ax, point)."""
     points = result.points()
     columns = min(len(points), 2)
     rows = -(-len(points) // columns)
-    fig = result.page(3.0 * rows + 0.7 if columns > 1 else 5.0, result.title(what))
-    grid = fig.subplots(rows, columns, squeeze=False)
-    for ax in grid.flat[len(points) :]:
-        ax.set_axis_off()
-    return fig, list(zip(grid.flat, points, strict=False))
+
+    def draw_all(axes):
+        for ax in axes.flat[len(points) :]:
+            ax.set_axis_off()
+        for ax, point in zip(axes.flat, points, strict=False):
+            draw(ax, point)
+            ax.set_title(point.label)
+        legend(axes)
+
+    return Panels(result.title(what), 3.0 * rows + 0.7 if columns > 1 else 5.0, draw_all, rows, columns)
+
+
+def _histories(result, what, draw, label) -> Panels:
+    """The orbits below each other; draw(ax, point). label : of the common abscissa"""
+    points = result.points()
+
+    def draw_all(axes):
+        for ax, point in zip(axes[:, 0], points, strict=True):
+            draw(ax, point)
+            ax.set_title(point.label)
+        axes[-1, 0].set_xlabel(label)
+        legend(axes)
+
+    height = 1.5 * len(points) + 0.9 if len(points) > 1 else 3.2
+    return Panels(result.title(what), height, draw_all, len(points), grid={"sharex": True})
 
 
 def displacements(result: Result) -> tuple[str, ...]:
@@ -70,13 +92,14 @@ def _symbol(name: str) -> str:
     return r"$\dot g$" if name == "gap_velocity" else symbol(name)
 
 
-def phase_portrait(result: Result):
+@picture(shows_trajectory, displacements, of_orbits=True)
+def phase_portrait(result: Result) -> Panels:
     """x1 and v1 between the stops, or another displacement and its velocity, one panel an orbit; impacts, and the state
     at each forcing period. Where the gap is not x1, that and its velocity."""
-    fig, panels = _portraits(result, "Phase portrait")
     x_name = result.options.variable or displacements(result)[0]
     v_name = _velocity(x_name)
-    for ax, point in panels:
+
+    def draw(ax, point):
         motion = stored_motion(result, point)
         first = x_name == motion.names[0]
         motion = motion if first or result.contact_normal is not None else motion.joined()
@@ -86,19 +109,16 @@ def phase_portrait(result: Result):
         if first:
             walls(ax, motion.stops, motion.laws, stop_names(result))
         _mark_sections(ax, result, point, x_name, v_name)
-        ax.set(
-            title=point.label,
-            xlabel=_symbol(x_name) + result.unit(x_name),
-            ylabel=_symbol(v_name) + result.unit(v_name),
-        )
-    legend(fig)
-    return fig
+        ax.set(xlabel=_symbol(x_name) + result.unit(x_name), ylabel=_symbol(v_name) + result.unit(v_name))
+
+    return _portraits(result, "Phase portrait", draw)
 
 
-def configuration(result: Result):
+@picture(shows_both_masses, of_orbits=True)
+def configuration(result: Result) -> Panels:
     """The first two masses' displacements against each other (the paper's figure 4), one panel an orbit."""
-    fig, panels = _portraits(result, "Configuration plane")
-    for ax, point in panels:
+
+    def draw(ax, point):
         motion = stored_motion(result, point).joined()
         portrait(ax, motion, "x1", "x2")
         if result.contact_normal is None:
@@ -106,9 +126,9 @@ def configuration(result: Result):
         elif not result.contact_normal[2:].any():
             _slanted_walls(ax, result, motion)
         _mark_sections(ax, result, point, "x1", "x2")
-        ax.set(title=point.label, xlabel=symbol("x1") + result.unit("x1"), ylabel=symbol("x2") + result.unit("x2"))
-    legend(fig)
-    return fig
+        ax.set(xlabel=symbol("x1") + result.unit("x1"), ylabel=symbol("x2") + result.unit("x2"))
+
+    return _portraits(result, "Configuration plane", draw)
 
 
 def _slanted_walls(ax, result, motion):
@@ -136,12 +156,13 @@ def abscissae(result: Result) -> tuple[str, ...]:
     return tuple(f"x{n}" for n in range(1, MOST_MASSES + 1) if f"x{n}" in result and f"v{n}" in result)
 
 
-def poincare(result: Result):
+@picture(shows_poincare, abscissae, of_orbits=True)
+def poincare(result: Result) -> Panels:
     """Section points in the plane of x1 and v1, or of x2 and v2; of impacts of phase and v1. One panel an orbit."""
-    fig, panels = _portraits(result, "Poincaré section")
     x_name = result.options.variable or abscissae(result)[0]
     v_name = "v1" if x_name == "phase" else _velocity(x_name)
-    for ax, point in panels:
+
+    def draw(ax, point):
         x, v = (result.one(name, point) for name in (x_name, v_name))
         size = np.clip(60 / np.sqrt(_different(x)), 2, 8)
         ax.plot(x, v, ".", color=SECTION, markersize=size, markeredgewidth=0, rasterized=True)
@@ -153,10 +174,9 @@ def poincare(result: Result):
             walls(ax, stops, [side for side in stops if result.compliance(side, point.place)], stop_names(result))
         name = before_impact if "phase" in result else at_section
         phase = r"$\omega t$ mod $2\pi$" if x_name == "phase" else None
-        ax.set(title=point.label, xlabel=phase or name(x_name) + result.unit(x_name))
-        ax.set_ylabel(name(v_name) + result.unit(v_name))
-    legend(fig)
-    return fig
+        ax.set(xlabel=phase or name(x_name) + result.unit(x_name), ylabel=name(v_name) + result.unit(v_name))
+
+    return _portraits(result, "Poincaré section", draw)
 
 
 def _different(values) -> int:
@@ -184,16 +204,15 @@ def coordinates(result: Result) -> tuple[str, ...]:
     return tuple(name for name in state(MOST_MASSES) if f"trajectory_{name}" in result)
 
 
-def history(result: Result):
+@picture(shows_trajectory, coordinates, of_orbits=True)
+def history(result: Result) -> Panels:
     """All displacements over time, or one coordinate, one panel an orbit, the stops as lines."""
-    points = result.points()
-    fig = result.page(1.5 * len(points) + 0.9 if len(points) > 1 else 3.2, result.title("Time history"))
-    grid = fig.subplots(len(points), squeeze=False, sharex=True)[:, 0]
     chosen = result.options.variable
     gap = [] if result.contact_normal is None else ["gap"]
     names = [chosen] if chosen else [*gap, *(name for name in coordinates(result) if name.startswith("x"))]
     styles = [{"color": INK}, {"color": RIGHT, "ls": (0, (4, 1))}, {"color": LEFT, "ls": (0, (1, 1))}, {"color": FAINT}]
-    for ax, point in zip(grid, points, strict=True):
+
+    def draw(ax, point):
         motion = stored_motion(result, point)
         for i, name in enumerate(names):
             jumps = name.startswith("v") and (name == "v1" or result.contact_normal is not None)
@@ -205,32 +224,32 @@ def history(result: Result):
         if motion.names[0] in names:
             levels(ax, motion, stop_names(result))
         ax.margins(x=0)
-        ax.set(title=point.label, ylabel=(symbol(chosen) if chosen else "displacement") + result.unit(names[0]))
-    grid[-1].set_xlabel("$t / T$ (forcing periods)")
-    legend(fig)
-    return fig
+        ax.set_ylabel((symbol(chosen) if chosen else "displacement") + result.unit(names[0]))
+
+    return _histories(result, "Time history", draw, "$t / T$ (forcing periods)")
 
 
-def iteration(result: Result):
+@picture(shows_section, section_variables, of_orbits=True)
+def iteration(result: Result) -> Panels:
     """The section's coordinate over the iterations (the paper's figures 7 and 8), one panel an orbit."""
     at_impact = "phase" in result
     name = result.options.variable or section_variables(result)[0]
-    points = result.points()
-    fig = result.page(1.5 * len(points) + 0.9 if len(points) > 1 else 3.2, result.title("Iteration of the section"))
-    grid = fig.subplots(len(points), squeeze=False, sharex=True)[:, 0]
+    transient = result.number("transient")
+    after = "" if transient is None else f" after {transient:.0f} periods of transient"
     most = 1
-    for ax, point in zip(grid, points, strict=True):
+
+    def draw(ax, point):
+        nonlocal most
         values = result.one(name, point)
         ax.plot(values, "-", color=FAINT, lw=0.3)
         ax.plot(values, ".", color=INK, markersize=np.clip(60 / np.sqrt(len(values)), 3, 8), markeredgewidth=0)
-        ax.set(title=point.label, ylabel=(before_impact if at_impact else symbol)(name) + result.unit(name))
+        ax.set_ylabel((before_impact if at_impact else symbol)(name) + result.unit(name))
         ax.xaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1, steps=[1, 2, 2.5, 5, 10]))
         if np.isfinite(values).any():
             ax.set_ylim(limits(values))
             most = max(most, np.flatnonzero(np.isfinite(values))[-1] + 1)
-    margin = max(0.5, 0.01 * most)
-    grid[0].set_xlim(-margin, most - 1 + margin)
-    transient = result.number("transient")
-    after = "" if transient is None else f" after {transient:.0f} periods of transient"
-    grid[-1].set_xlabel(("impact" if at_impact else "iteration") + " $n$" + after)
-    return fig
+        margin = max(0.5, 0.01 * most)
+        ax.set_xlim(-margin, most - 1 + margin)  # of all orbits, which share it
+
+    label = ("impact" if at_impact else "iteration") + " $n$" + after
+    return _histories(result, "Iteration of the section", draw, label)

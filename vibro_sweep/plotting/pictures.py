@@ -23,6 +23,7 @@ from vibro_sweep.plotting.film import Film
 from vibro_sweep.plotting.style import STYLE
 from vibro_sweep.plotting.sweep_result import PlotError
 
+SUFFIXES = (".png", ".svg", ".pdf")  # FILMS have more
 MOST = 2**28  # bytes of a picture that is looked at
 
 _DIGEST = re.compile(rb"sha256:([0-9a-f]{64})")

@@ -12,6 +12,8 @@ from matplotlib.ticker import MaxNLocator
 
 from vibro_sweep.plotting import decades, rests, strip
 from vibro_sweep.plotting.decades import along_axis, in_proportion
+from vibro_sweep.plotting.figure import Panels
+from vibro_sweep.plotting.kind import picture
 from vibro_sweep.plotting.labels import arrange, legend_below, thin_ticks
 from vibro_sweep.plotting.regions import name_regions
 from vibro_sweep.plotting.relative import axis_label, check_relative
@@ -59,7 +61,8 @@ def variables(result: Result) -> tuple[str, ...]:
     return tuple(name for name in ("lyapunov", *_OF_A_POINT) if name in result)
 
 
-def plane(result: Result, overlay: Overlay | None = None):
+@picture(shows, variables, relative=True)
+def plane(result: Result, overlay: Overlay | None = None) -> Panels:
     """lambda_1 and the period over the two parameters, side by side; where neither is stored the impacts, or their
     power.
 
@@ -70,11 +73,17 @@ def plane(result: Result, overlay: Overlay | None = None):
     overlay : drawn on each panel
     """
     maps, note = _maps(result)
-    maps = maps if result.ax is None else maps[:1]
     of_states = all(key.startswith("start_") for key in result.sweep)
     what = "Plane of initial states" if of_states else "Parameter plane"
-    fig = result.page(4.4 if len(maps) > 1 else 5.4, result.title(what + note))
-    grid = fig.subplots(1, len(maps), sharex=True, sharey=True, squeeze=False)[0]
+    return Panels(
+        result.title(what + note), 4.4 if len(maps) > 1 else 5.4, lambda axes: _draw(axes[0], result, maps, overlay),
+        columns=len(maps), grid={"sharex": True, "sharey": True}, alone=True,
+    )  # fmt: skip
+
+
+def _draw(grid, result, maps, overlay) -> None:
+    """Draw the maps; into axes of the caller's the first of them."""
+    maps = maps[: len(grid)]
     (x_key, x), (y_key, y) = result.sweep.items()
     relative = result.options.relative
     scales = ["log" if in_proportion(np.sort(values)) and not relative else "linear" for values in (x, y)]
@@ -103,7 +112,7 @@ def plane(result: Result, overlay: Overlay | None = None):
             overlay.draw(ax)
     zero = "lyapunov_error" in result and any(draw is _exponent and (values == 0).any() for draw, values in maps)
     more = [_within_errors(result)] if zero else []
-    _legend(fig, grid, any(values.mask.any() for values in shown), result.options, overlay, more)
+    _legend(grid, any(values.mask.any() for values in shown), result.options, overlay, more)
     arrange(grid[0].figure)
     for ax, (draw, _), values in zip(grid, maps, shown, strict=True):
         taken = [] if overlay is None else overlay.name(ax)
@@ -112,7 +121,6 @@ def plane(result: Result, overlay: Overlay | None = None):
         for image in (*ax.images, *ax.collections):
             if image.colorbar is not None:
                 thin_ticks(image.colorbar)
-    return fig
 
 
 def _in_range(values, limits) -> tuple[np.ndarray, np.ndarray]:
@@ -162,7 +170,7 @@ def _within_errors(result) -> Patch:
     return Patch(facecolor=NEUTRAL, edgecolor=FAINT, label=text)
 
 
-def _legend(fig, grid, gaps, options, overlay, more):
+def _legend(grid, gaps, options, overlay, more):
     handles = [line for line in grid[0].lines if line.get_gid() == "window end"]
     handles += more
     handles += [] if overlay is None else overlay.handles(grid[0])
@@ -177,7 +185,7 @@ def _legend(fig, grid, gaps, options, overlay, more):
     if hatched:
         handles.append(Patch(facecolor=NOT_COMPUTED, edgecolor=FAINT, hatch="////", label=" or ".join(hatched)))
     if handles:
-        legend_below(fig, handles, 4, grow=options.size is None)
+        legend_below(grid, handles, 4, grow=options.size is None)
 
 
 def _visible(ax, line) -> bool:

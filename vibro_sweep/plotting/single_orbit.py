@@ -1,24 +1,23 @@
 """Pictures of one orbit: phase portrait of the gap and its time history, or forces of its stops."""
 
-import matplotlib as mpl
 import numpy as np
 
 from vibro_sweep.plotting import drawn_motion, rests
-from vibro_sweep.plotting.plot_options import PlotOptions
+from vibro_sweep.plotting.figure import Panels
 from vibro_sweep.plotting.style import DASHES, FAINT, INK, LEFT, RIGHT, with_unit
 from vibro_sweep.results.motion import Motion
 
 STOPS = {1: "right stop", -1: "left stop"}
 
 
-def portrait_and_history(motion: Motion, title: str, system, names=("gap", "gap velocity"), width=None):
-    """A Figure. system : whose units the axes have; names : of the gap and its velocity; width : mm"""
-    options, declared = PlotOptions(width=width), ("m", "m s-1", "s")
+def portrait_and_history(motion: Motion, title: str, system, names=("gap", "gap velocity")) -> Panels:
+    """system : whose units the axes have; names : of the gap and its velocity"""
+    declared = ("m", "m s-1", "s")
     x_label, v_label, t_label = map(with_unit, (*names, "time $t$"), declared, 3 * [system])
     gap, rate = motion.names
-    with mpl.rc_context(options.style):
-        fig = options.page(3.7, title)
-        portrait, history = fig.subplots(1, 2, width_ratios=(1, 1.4))
+
+    def draw(axes):
+        portrait, history = axes[0]
         length = motion.t[-1] - motion.t[0]
         drawn_motion.portrait(portrait, motion, gap, rate, motion.t[0] + length * np.array(drawn_motion.ARROWS_AT))
         drawn_motion.walls(portrait, motion.stops, motion.laws, STOPS)
@@ -35,22 +34,23 @@ def portrait_and_history(motion: Motion, title: str, system, names=("gap", "gap 
         for stop in motion.stops.values():
             history.axhline(stop, color=FAINT, lw=0.6, ls=DASHES)
         history.set(xlabel=t_label, ylabel=x_label)
-        drawn_motion.legend(fig)
-        return fig
+        drawn_motion.legend(axes)
+
+    return Panels(title, 3.7, draw, columns=2, grid={"width_ratios": (1, 1.4)})
 
 
-def forces(motion: Motion, title: str, system, names=("gap", "gap velocity"), width=None):
-    """The force of the compliant stops over time, and against the gap: a Figure."""
-    options = PlotOptions(width=width)
+def forces(motion: Motion, title: str, system, names=("gap", "gap velocity")) -> Panels:
+    """The force of the compliant stops over time, and against the gap."""
     t_label, x_label, label = (
         with_unit(text, unit, system) for text, unit in (("time $t$", "s"), (names[0], "m"), ("force of the stop", "N"))
     )
-    with mpl.rc_context(options.style):
-        fig = options.page(3.2, title)
-        over_time, loop = fig.subplots(1, 2, width_ratios=(2, 1), sharey=True)
+
+    def draw(axes):
+        over_time, loop = axes[0]
         drawn_motion.force(over_time, loop, motion.joined(), STOPS)
         over_time.set(xlabel=t_label, ylabel=label)
         over_time.margins(x=0)
         loop.set(xlabel=x_label)
-        drawn_motion.legend(fig)
-        return fig
+        drawn_motion.legend(axes)
+
+    return Panels(title, 3.2, draw, columns=2, grid={"width_ratios": (2, 1), "sharey": True})

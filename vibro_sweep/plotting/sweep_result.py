@@ -3,15 +3,11 @@
 from typing import NamedTuple
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
-from vibro_sweep.checks.real import number_of
-from vibro_sweep.checks.refusals import not_allowed, shown
+from vibro_sweep.checks.refusals import shown
 from vibro_sweep.files.file_errors import StoreError
 from vibro_sweep.oscillator.catalogue import OF_A_SYSTEM
 from vibro_sweep.oscillator.stops import NUMBERS, compliance_of
-from vibro_sweep.plotting.panel import Panel
 from vibro_sweep.plotting.plot_options import PlotOptions
 from vibro_sweep.plotting.settings import settings_of
 from vibro_sweep.plotting.source import PlotError, sweep_read
@@ -41,12 +37,12 @@ class Result:
     `sweep`: key -> its values, in order; `starts`: names of the starts (one empty name if there is only one);
     `follow`: they are an upward and a downward branch; `done`: bool, shape (*sweep, starts), which points are
     computed; `failed`: none of them well; `settings`: numbers and words that hold for all points; `significant`: how
-    many standard errors tell an exponent from zero, and are drawn; `ax`: the caller's axes, if the picture goes there.
+    many standard errors tell an exponent from zero, and are drawn.
     Raises `PlotError` where the file is missing or not a result.
     """
 
-    def __init__(self, given, options: PlotOptions | None = None, ax: Axes | None = None):
-        self.options, self.ax = options or PlotOptions(), ax
+    def __init__(self, given, options: PlotOptions):
+        self.options = options
         self._open = sweep_read(given)
         self._source = self._open.__enter__()
         self.path = self._source.name
@@ -84,8 +80,6 @@ class Result:
             if key not in names:
                 allowed = ", ".join(name + self.unit(name) for name in names) or "nothing, it is one point"
                 raise PlotError(f"at: {shown(key)} is not swept; allowed: {allowed}")
-            if number_of(value) is None or not np.isfinite(value):
-                raise PlotError(not_allowed(f"at.{key}", value, "a finite number"))
             if not self.sweep[key].min() <= value <= self.sweep[key].max():
                 raise PlotError(f"at: {key} = {value:g} is not allowed; {self.extent(key)}")
         return {names.index(key): int(np.argmin(np.abs(self.sweep[key] - value))) for key, value in at.items()}
@@ -265,10 +259,6 @@ class Result:
         values = [equation(key, self.number(key, place)) for key in self.sweep]
         name = self.starts[start]
         return ", ".join([*values, *([name if self.follow else f"start {name}"] if name else [])])
-
-    def page(self, height: float, title: str) -> Figure | Panel:
-        """The page on which a picture is drawn."""
-        return self.options.page(height, title) if self.ax is None else Panel(self.ax, title)
 
     def title(self, what="") -> str:
         """The title: what is shown, the numbers that are the same at every point, and how much is there if not all."""

@@ -6,7 +6,9 @@ from matplotlib.patches import Patch
 
 from vibro_sweep.plotting import density, rests, strip
 from vibro_sweep.plotting.decades import in_proportion
+from vibro_sweep.plotting.figure import Panels
 from vibro_sweep.plotting.impact_panel import NONE, impact_counts, there_are
+from vibro_sweep.plotting.kind import picture
 from vibro_sweep.plotting.labels import ABOVE, legend_below
 from vibro_sweep.plotting.spectrum_panel import spectrum
 from vibro_sweep.plotting.style import (
@@ -52,7 +54,18 @@ def shows_impacts(result: Result) -> bool:
     return len(result.sweep) == 1 and "impacts_right" in result and "impacts_left" in result
 
 
-def bifurcation(result: Result):
+def section_variables(result: Result) -> tuple[str, ...]:
+    """Coordinates of the section points in the file, the one that is drawn by default first."""
+    names = state(MOST_MASSES)
+    if "phase" in result:
+        names = ("v1", "x1", "phase", *names[2:])
+    elif "gap" in result:
+        names = ("gap", *names)
+    return tuple(name for name in names if name in result)
+
+
+@picture(shows_bifurcation, section_variables)
+def bifurcation(result: Result) -> Panels:
     """Section points over the parameter; below, on the same axis, windows, spectrum and impacts where there are any."""
     panels = [(3.6, section)]
     if result.options.windows:
@@ -65,48 +78,43 @@ def bifurcation(result: Result):
             panels.append((0.9, impact_counts))
         elif not result.failed and result.rigid:
             note = f"; {NONE}"
-    return _stack(result, panels if result.ax is None else panels[:1], f"Bifurcation diagram{note}")
+    return _stack(result, panels, f"Bifurcation diagram{note}")
 
 
-def lyapunov(result: Result):
+@picture(shows_lyapunov)
+def lyapunov(result: Result) -> Panels:
     """The Lyapunov spectrum over the parameter."""
     return _stack(result, [(3.6, spectrum)], "Lyapunov exponents")
 
 
-def impacts(result: Result):
+@picture(shows_impacts)
+def impacts(result: Result) -> Panels:
     """Impacts at each stop over the parameter."""
     return _stack(result, [(2.8, impact_counts)], "Impacts")
 
 
-def section_variables(result: Result) -> tuple[str, ...]:
-    """Coordinates of the section points in the file, the one that is drawn by default first."""
-    names = state(MOST_MASSES)
-    if "phase" in result:
-        names = ("v1", "x1", "phase", *names[2:])
-    elif "gap" in result:
-        names = ("gap", *names)
-    return tuple(name for name in names if name in result)
-
-
-def _stack(result, panels, what):
+def _stack(result, panels, what) -> Panels:
+    """Panels over the swept number, each of a height and what draws it: draw(ax, result, values, order)."""
     heights = [height for height, _ in panels]
     starts = len(result.starts)
     note = f"; {starts} starts at each value" if starts > 1 and not result.follow else ""
-    fig = result.page(sum(heights) + 1.2, result.title(what + note))
-    axes = fig.subplots(len(panels), sharex=True, squeeze=False, height_ratios=heights)[:, 0]
     ((key, values),) = result.sweep.items()
     order = in_range(result)
     values = values[order]
-    for ax, (_, draw) in zip(axes, panels, strict=True):
-        draw(ax, result, values, order)
-    if key == "b":
-        mark_grazing(axes, result, *(result.options.xlim or values[[0, -1]]))
-    set_reach(axes[-1], values)
-    axes[-1].set_xlabel(result.axis(key))
-    _key(axes[0], result)
-    _explanations(fig, axes, result)
-    fig.align_ylabels(axes)
-    return fig
+
+    def draw_all(axes):
+        axes = axes[:, 0]
+        for ax, (_, draw) in zip(axes, panels, strict=False):
+            draw(ax, result, values, order)
+        if key == "b":
+            mark_grazing(axes, result, *(result.options.xlim or values[[0, -1]]))
+        set_reach(axes[-1], values)
+        axes[-1].set_xlabel(result.axis(key))
+        _key(axes[0], result)
+        _explanations(axes, result)
+
+    grid = {"sharex": True, "height_ratios": heights}
+    return Panels(result.title(what + note), sum(heights) + 1.2, draw_all, len(panels), grid=grid, alone=True)
 
 
 def set_reach(ax, values) -> None:
@@ -165,7 +173,7 @@ def _key(ax, result):
         ax.legend(handles=handles, ncols=len(handles), handletextpad=0.3, columnspacing=1.2, borderpad=0.1, **ABOVE)
 
 
-def _explanations(fig, axes, result):
+def _explanations(axes, result):
     """Draw the key of tints, bands and lines below the panels."""
     found = {artist.get_gid() for ax in axes for artist in (*ax.collections, *ax.lines)}
     errors = f"{result.significant:.2g} standard errors"
@@ -179,7 +187,7 @@ def _explanations(fig, axes, result):
     }
     shown = [handle for name, handle in handles.items() if name in found]
     if shown:
-        legend_below(fig, shown, len(shown))
+        legend_below(axes, shown, len(shown))
 
 
 def section(ax, result, values, order):

@@ -204,7 +204,7 @@ def _scene_form(system, numbers: Iterable[Parameter], masses: int) -> type[Form]
         ),
         trajectory=(TrajectoryForm, Field(default=None, description="store the continuous orbit as well")),
         picture=(
-            Literal[PICTURES],
+            Literal[tuple(PICTURES)],
             Field(default=None, description="kind of picture that is drawn by default, if the file has what it needs"),
         ),
     )

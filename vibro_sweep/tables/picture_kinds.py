@@ -25,7 +25,21 @@ class Plottable(Protocol):
         """All its numbers."""
 
 
-PICTURES = (
-    "basins", "coexistence", "plane", "bifurcation", "lyapunov", "impacts", "contacts", "energy", "phase-portrait",
-    "configuration", "history", "contact-force", "film", "iteration", "poincare", "convergence",
-)  # fmt: skip
+PICTURES = {  # name -> the function of plotting/, as MODULE.FUNCTION
+    "basins": "basins.basins",
+    "coexistence": "coexistence.coexistence",
+    "plane": "planes.plane",
+    "bifurcation": "sweeps.bifurcation",
+    "lyapunov": "sweeps.lyapunov",
+    "impacts": "sweeps.impacts",
+    "contacts": "sizes_of_motion.contacts",
+    "energy": "sizes_of_motion.energy",
+    "phase-portrait": "orbit_pictures.phase_portrait",
+    "configuration": "orbit_pictures.configuration",
+    "history": "orbit_pictures.history",
+    "contact-force": "contact_force.contact_force",
+    "film": "film.film",
+    "iteration": "orbit_pictures.iteration",
+    "poincare": "orbit_pictures.poincare",
+    "convergence": "convergence.convergence",
+}

@@ -63,10 +63,11 @@ def sampled(orbit: Any, q: Linear, times: np.ndarray) -> Motion:
 def orbit_figure(motion: Motion, kind: str | None, title: str, system: Any, names, width: float | None) -> "Figure":
     """The picture of an orbit that `kind` asks for. Raises ArgumentError for another word, and for forces of rigid
     stops."""
+    from vibro_sweep.plotting.plot_options import PlotOptions
     from vibro_sweep.plotting.single_orbit import forces, portrait_and_history
 
-    if not shows_force(kind):
-        return portrait_and_history(motion, title, system, names, width)
-    if not motion.laws:
+    of_force = shows_force(kind)
+    if of_force and not motion.laws:
         raise ArgumentError('kind "contact-force": the stops of this orbit are rigid')
-    return forces(motion, title, system, names, width)
+    panels = (forces if of_force else portrait_and_history)(motion, title, system, names)
+    return PlotOptions(width=width).draw(panels)[0].figure

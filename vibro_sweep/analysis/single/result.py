@@ -78,7 +78,7 @@ class FileResult(Result):
 
     def plot(self, **options: Any) -> "Figure | None":
         """`vibro_sweep.plot` of it, with the same options."""
-        from vibro_sweep.plotting.front import plot
+        from vibro_sweep.plotting.plot import plot
 
         return plot(self, **options)
 

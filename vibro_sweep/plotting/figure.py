@@ -1,4 +1,4 @@
-"""The page of a picture: a figure that notebooks show, as wide as a page or as one of its columns.
+"""The figure of a picture, which notebooks show, as wide as a page or as one of its columns; and what it is made of.
 
 On a narrow page all type has one size that is still read, the title has more lines, and panels that stand side by side
 elsewhere stand below each other.
@@ -6,6 +6,9 @@ elsewhere stand below each other.
 
 import io
 import re
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
+from typing import Any, NamedTuple
 
 import matplotlib
 import numpy as np
@@ -91,6 +94,24 @@ class Picture(Figure):
             return text.get_window_extent().width <= EDGE * self.bbox.width
         finally:
             text.remove()
+
+
+class Panels(NamedTuple):
+    """What a picture is made of.
+
+    height : of a figure of it, in inches; draw : draws into its axes, (rows, columns); grid : more options of
+    `subplots`; alone : whether it may be drawn into the first of its axes only; figure : a kind of figure that `draw`
+    gets in place of axes
+    """
+
+    title: str
+    height: float
+    draw: Callable[[Any], None]
+    rows: int = 1
+    columns: int = 1
+    grid: Mapping[str, Any] = MappingProxyType({})
+    alone: bool = False
+    figure: type[Picture] | None = None
 
 
 def page(
