@@ -192,6 +192,7 @@ def main():
     parser.add_argument("--minutes", type=float, default=20, help="for the tests of a change")
     parser.add_argument("--log", type=Path, default=os.devnull, help="the table is appended to it")
     options = parser.parse_args()
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # so that the changed file gets its old text again
     work = options.work.resolve()
     home = work / "checkout"
     if not home.exists():
