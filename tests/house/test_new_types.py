@@ -78,7 +78,7 @@ PERIODS = '''"""The periods of orbits over a parameter."""
 from vibro_sweep.plotting.figure import Panels
 from vibro_sweep.plotting.kind import picture
 from vibro_sweep.plotting.labels import legend_below
-from vibro_sweep.plotting.sweep_result import Result
+from vibro_sweep.plotting.drawn_sweep import Result
 
 
 def shows(result: Result) -> bool:

@@ -7,7 +7,7 @@ import pytest
 
 import vibro_sweep as vs
 from vibro_sweep.analysis.branches.branch_arrays import arrays_of, sections_of
-from vibro_sweep.plotting import joined
+from vibro_sweep.plotting import multiplier_lines
 
 
 class Points(SimpleNamespace):
@@ -33,7 +33,7 @@ def test_each_line_is_one_multiplier():
     pair = size * np.exp(1j * (1 + 0.3 * b))
     one = np.stack([real, pair, pair.conj(), small], axis=1)
     both = np.concatenate([one, one[::-1]])
-    found = joined.multipliers(Points(branch_row_size=np.array([23, 23]), **stored(both)))
+    found = multiplier_lines.multipliers(Points(branch_row_size=np.array([23, 23]), **stored(both)))
     for part, falls in ((found[:23], False), (found[23:], True)):
         columns = part[:: -1 if falls else 1].T
         for expected in (real, size, size, small):
@@ -45,7 +45,7 @@ def test_each_line_is_one_multiplier():
 def test_two_real_multipliers_become_a_pair():
     b = np.linspace(-1, 1, 41)
     root = 0.2 * np.sqrt(b + 0j)
-    found = joined.multipliers(
+    found = multiplier_lines.multipliers(
         Points(branch_row_size=np.array([41]), **stored(np.stack([0.6 + 1j * root, 0.6 - 1j * root], 1)))
     )
     assert np.all(np.abs(np.diff(found, axis=0)) < 0.06)
@@ -54,7 +54,7 @@ def test_two_real_multipliers_become_a_pair():
 
 def test_a_mark_is_where_a_multiplier_is_on_the_circle():
     moduli = np.array([1.7, 1.0000001, 0.2])
-    assert joined.at_circle(moduli, True) == 1.0000001 and joined.at_circle(moduli, False) == 1.7
+    assert multiplier_lines.at_circle(moduli, True) == 1.0000001 and multiplier_lines.at_circle(moduli, False) == 1.7
 
 
 @pytest.mark.parametrize("at", [1, 10, 30])
@@ -68,11 +68,11 @@ def test_another_turning_point_begins_another_line(at):
     )  # fmt: skip
     expected = np.ones(40, bool)
     expected[[at - 1, 39]] = False
-    assert joined.margins(points, ["x1"]).tolist() == expected.tolist()
+    assert multiplier_lines.margins(points, ["x1"]).tolist() == expected.tolist()
     points.stop_distance = 0.2 + 0.3 * b + 2 * b**3
-    assert joined.margins(points, ["x1"])[:-1].all()
+    assert multiplier_lines.margins(points, ["x1"])[:-1].all()
     points.stop_distance[20] = np.inf
-    assert np.flatnonzero(~joined.margins(points, ["x1"])).tolist() == [19, 20, 39]
+    assert np.flatnonzero(~multiplier_lines.margins(points, ["x1"])).tolist() == [19, 20, 39]
 
 
 def test_an_impact_that_vanishes_is_no_turning_point():
@@ -82,7 +82,7 @@ def test_an_impact_that_vanishes_is_no_turning_point():
         branch_row_size=np.array([20]), b=b, x1=b, stop_distance=0.04 * b, special_point=np.array([0, 19]),
         special_impact=np.array([1, -1]),
     )  # fmt: skip
-    assert np.flatnonzero(~joined.margins(points, ["x1"])).tolist() == [0, 19]
+    assert np.flatnonzero(~multiplier_lines.margins(points, ["x1"])).tolist() == [0, 19]
 
 
 def test_section_states_are_continuous_along_a_branch():

@@ -4,12 +4,12 @@ import numpy as np
 from matplotlib.colors import to_rgb
 from matplotlib.patches import Patch
 
+from vibro_sweep.plotting.drawn_sweep import DrawnSweep, Point
 from vibro_sweep.plotting.families import KINDS, describe, kind, named
 from vibro_sweep.plotting.figure import Panels
 from vibro_sweep.plotting.kind import picture
 from vibro_sweep.plotting.labels import legend_below
 from vibro_sweep.plotting.style import INK, NOT_COMPUTED, edges, equation, marked
-from vibro_sweep.plotting.sweep_result import Point, Result
 from vibro_sweep.tables.coordinates import MOST_MASSES, START, state
 
 NAMED = 11  # attractors that the legend has room for
@@ -19,13 +19,13 @@ MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*", "<", ">", "h")  # of the attr
 _SHADES = (0.0, 0.45, -0.35, 0.7)  # of attractors of one kind, towards white or black
 
 
-def shows(result: Result) -> bool:
+def shows(result: DrawnSweep) -> bool:
     """A sweep over two numbers of the start; attractors."""
     return len(result.sweep) == 2 and all(key.startswith("start_") for key in result.sweep) and "average" in result
 
 
 @picture(shows)
-def basins(result: Result) -> Panels:
+def basins(result: DrawnSweep) -> Panels:
     """The plane of initial states, each in the colour of the attractor that its orbit reaches, as the file numbers it.
 
     A file without these numbers (not complete) shows of which kind the attractors are.
@@ -65,13 +65,13 @@ def _mark(ax, result, members, marker, stored):
     place = tuple(map(int, np.argwhere(members)[0]))
     names = [key.removeprefix("start_") for key in result.sweep]
     if stored:
-        x, y = (result.one(name, Point((*place, 0), place, "")) for name in names)
+        x, y = (result.at_point(name, Point((*place, 0), place, "")) for name in names)
     else:
-        average = result.one("average", Point((*place, 0), place, ""))
+        average = result.at_point("average", Point((*place, 0), place, ""))
         x, y = ([average[state(MOST_MASSES).index(name)]] for name in names)
     # an attractor at the frame is marked as a whole
     frame = zip((x, y), (ax.get_xlim(), ax.get_ylim()), strict=True)
-    near = all(abs(one - (low + high) / 2) < NEAR * (high - low) for values, (low, high) in frame for one in values)
+    near = all(abs(v - (low + high) / 2) < NEAR * (high - low) for values, (low, high) in frame for v in values)
     style = {"color": "white", "markeredgecolor": INK, "markeredgewidth": 0.8, "markersize": 4 if stored else 7}
     ax.plot(x, y, marker, **style, ls="none", clip_on=not near, gid="attractor")
 
@@ -88,7 +88,7 @@ def _attractors(result):
     label[np.isin(label, others)] = OTHERS
     numbers, counts = np.unique(label[label >= 0], return_counts=True)
     labels, seen = {}, {}
-    for number in sorted(numbers, key=lambda one: (one == 0, one == OTHERS, -counts[numbers == one])):
+    for number in sorted(numbers, key=lambda n: (n == 0, n == OTHERS, -counts[numbers == n])):
         members = label == number
         least, of_it = period[members].min(), average[members].mean(axis=0)
         which, text = str(kind(least, of_it)), describe(least, of_it, result.meeting)
@@ -107,13 +107,13 @@ def _kinds(result):
     rank = result.array("attractor")[:, :, 0]
     label[rank == 0] = names.index("unsettled")
     label[np.isnan(rank)] = np.nan
-    there = {number: np.mean(label == number) for number in np.unique(label[label >= 0])}
+    shares = {number: np.mean(label == number) for number in np.unique(label[label >= 0])}
     return label, {
         number: (
             to_rgb(KINDS[names[int(number)]][1]),
             f"{named(names[int(number)], result.meeting)} ({100 * share:.3g} %)",
         )
-        for number, share in there.items()
+        for number, share in shares.items()
     }
 
 
@@ -125,6 +125,6 @@ def _shade(colour, n):
 
 def _rest(result) -> str:
     """The part of the initial state that is the same everywhere."""
-    given = {key: result.number(key) for key in START.values() if key not in result.sweep}
-    known = [equation(key, value) for key, value in given.items() if value is not None]
+    rest_of_start = {key: result.number(key) for key in START.values() if key not in result.sweep}
+    known = [equation(key, value) for key, value in rest_of_start.items() if value is not None]
     return "; " + ", ".join(known) if known else ""

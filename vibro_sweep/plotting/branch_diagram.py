@@ -6,14 +6,14 @@ import numpy as np
 from matplotlib.lines import Line2D
 
 from vibro_sweep.checks.refusals import shown
-from vibro_sweep.plotting import joined, sweeps
-from vibro_sweep.plotting.decades import scale_of
+from vibro_sweep.plotting import multiplier_lines, sweeps
+from vibro_sweep.plotting.drawn_sweep import DrawnSweep, PlotError
 from vibro_sweep.plotting.figure import Panels
 from vibro_sweep.plotting.labels import arrange, legend_below, name_beside
 from vibro_sweep.plotting.plot_options import PlotOptions
 from vibro_sweep.plotting.ragged import RaggedFile, sweep_below
+from vibro_sweep.plotting.scales import scale_of
 from vibro_sweep.plotting.style import DASHES, FAINT, INK, LEFT, SPECIAL, axis_name, limits, special_mark, symbol
-from vibro_sweep.plotting.sweep_result import PlotError, Result
 from vibro_sweep.tables.bifurcations import ON_CIRCLE
 from vibro_sweep.tables.coordinates import MOST_MASSES, state
 from vibro_sweep.tables.file_columns import BRANCHES
@@ -45,7 +45,9 @@ def _draw(ax, file: RaggedFile, name: str, options: PlotOptions) -> None:
     if options.over is not None:
         _sweep(ax, options, file, name)
     values = values_of(file, name)
-    together = joined.margins(file, _sections(file)) if name == "stop_distance" else np.ones(len(values), bool)
+    together = (
+        multiplier_lines.margins(file, _sections(file)) if name == "stop_distance" else np.ones(len(values), bool)
+    )
     _lines(ax, file, _drawn(file, name, values, options.over is not None), together)
     marks = _marks(ax, file, values)
     if options.over is None:
@@ -61,13 +63,13 @@ def _draw(ax, file: RaggedFile, name: str, options: PlotOptions) -> None:
     if name == "multiplier":
         ax.axhline(1, color=INK, lw=0.5)
         ax.set_ylim(0, min(1.05 * np.nanmax(values), MOST))
-    there = [(kind, place) for kind, place in marks if all(map(_inside, place, (ax.get_xlim(), ax.get_ylim())))]
-    _legend(ax, {kind for kind, _ in there})
+    visible = [(kind, place) for kind, place in marks if all(map(_inside, place, (ax.get_xlim(), ax.get_ylim())))]
+    _legend(ax, {kind for kind, _ in visible})
     arrange(ax.figure)
-    there.sort(key=lambda mark: mark[0] != "sticking")  # where many accumulate, what they lead to is named
+    visible.sort(key=lambda mark: mark[0] != "sticking")  # where many accumulate, what they lead to is named
     y = np.reshape(values, (len(values), -1))
     lines = np.column_stack([np.repeat(file[file.parameters[0]], y.shape[1]), y.ravel()])
-    name_beside(ax, [SPECIAL[kind][0] for kind, _ in there], [place for _, place in there], lines)
+    name_beside(ax, [SPECIAL[kind][0] for kind, _ in visible], [place for _, place in visible], lines)
 
 
 def _inside(values, limits):
@@ -78,7 +80,7 @@ def _inside(values, limits):
 def values_of(file: RaggedFile, name: str) -> np.ndarray:
     """(points,) or (points, lines) what is drawn, of each point; NaN where it is not there."""
     if name == "multiplier":
-        return joined.multipliers(file)
+        return multiplier_lines.multipliers(file)
     if name in ("impact_speed", "stop_distance"):
         found = file["min_impact_speed" if name == "impact_speed" else name].astype(float)
         return np.where(np.isfinite(found), found, np.nan)
@@ -133,16 +135,18 @@ def _marks(ax, file: RaggedFile, values: np.ndarray) -> list[tuple[str, tuple[fl
     """Special points: (type, place). A line at the onset of sticking, where points accumulate."""
     x, y = file["special_value"][:, 0], values[_places(file)]
     if y.ndim == 2:
-        y = np.array([joined.at_circle(m, kind in ON_CIRCLE) for m, kind in zip(y, file.types(), strict=True)])
-    found = []
+        y = np.array(
+            [multiplier_lines.at_circle(m, kind in ON_CIRCLE) for m, kind in zip(y, file.types(), strict=True)]
+        )
+    marked = []
     for kind, at_x, at_y in zip(file.types(), x, y, strict=True):
         if kind not in SPECIAL or not np.isfinite(at_y):
             continue
         if kind == "sticking":
             ax.axvline(at_x, color=SPECIAL[kind][3], lw=0.6, ls=":", zorder=1, gid="sticking")
         ax.plot(at_x, at_y, gid="special", **special_mark(kind, 4.0), zorder=4.5 if kind == "sticking" else 4)
-        found.append((kind, (at_x, at_y)))
-    return found
+        marked.append((kind, (at_x, at_y)))
+    return marked
 
 
 def _places(file: RaggedFile) -> np.ndarray:
@@ -155,18 +159,20 @@ def _places(file: RaggedFile) -> np.ndarray:
     return point
 
 
-def _legend(ax, there: set[str]) -> None:
+def _legend(ax, kinds: set[str]) -> None:
     handles = [Line2D([], [], color=INK, lw=1.2, label="stable")]
     handles.append(Line2D([], [], color=INK, lw=0.7, ls=DASHES, label="unstable"))
     handles += [
-        Line2D([], [], label=f"{SPECIAL[k][0]} {SPECIAL[k][1]}", **special_mark(k)) for k in SPECIAL if k in there
+        Line2D([], [], label=f"{SPECIAL[k][0]} {SPECIAL[k][1]}", **special_mark(k)) for k in SPECIAL if k in kinds
     ]
     legend_below(ax, handles, 5)
 
 
 def _sweep(ax, options: PlotOptions, file: RaggedFile, name: str) -> None:
     """The section points of a sweep, below everything."""
-    with Result(sweep_below(options.over), PlotOptions(variable=name, xlim=options.xlim, ylim=options.ylim)) as result:
+    with DrawnSweep(
+        sweep_below(options.over), PlotOptions(variable=name, xlim=options.xlim, ylim=options.ylim)
+    ) as result:
         if list(result.sweep) != file.parameters or name not in sweeps.section_variables(result):
             raise PlotError(f"over: {result.path} is not a sweep over {file.parameters[0]} with section points {name}")
         ((_, values),) = result.sweep.items()

@@ -7,11 +7,11 @@ import numpy as np
 from vibro_sweep.checks.refusals import shown
 from vibro_sweep.plotting import planes
 from vibro_sweep.plotting.drawn_curves import Drawn, chart_of, draw, frame_of, handles, name_points
+from vibro_sweep.plotting.drawn_sweep import DrawnSweep, PlotError
 from vibro_sweep.plotting.figure import Panels
 from vibro_sweep.plotting.plot_options import PlotOptions
 from vibro_sweep.plotting.ragged import RaggedFile, sweep_below
 from vibro_sweep.plotting.relative import axis_label, check_relative
-from vibro_sweep.plotting.sweep_result import PlotError, Result
 from vibro_sweep.tables.bifurcations import CODIMENSION_TWO, CURVES
 from vibro_sweep.tables.file_columns import CHART
 
@@ -52,8 +52,8 @@ def drawn(file: RaggedFile, names: list[str], relative: bool = False) -> list[Dr
     result = []
     for i, (code, end) in enumerate(zip(file["branch_type"].tolist(), ends.tolist(), strict=True)):
         along = slice(end - int(file["branch_row_size"][i]), end)
-        own = np.flatnonzero(file["special_branch"] == i)
-        special = [(kinds[s], *places[s].tolist()) for s in own]
+        points_of_curve = np.flatnonzero(file["special_branch"] == i)
+        special = [(kinds[s], *places[s].tolist()) for s in points_of_curve]
         virtual, bounds = file["status"][along] != 0, file["unstable"][along] == 0
         result.append(Drawn(CURVES[code], *values[along].T, virtual, special, bounds, periods[i]))
     return result
@@ -61,7 +61,7 @@ def drawn(file: RaggedFile, names: list[str], relative: bool = False) -> list[Dr
 
 def _over(file: RaggedFile, options: PlotOptions) -> Panels:
     """Over the plane of a sweep in the same two numbers."""
-    with Result(sweep_below(options.over), options.replace(over=None)) as result:
+    with DrawnSweep(sweep_below(options.over), options.replace(over=None)) as result:
         if sorted(result.sweep) != sorted(file.parameters) or not planes.shows(result):
             raise PlotError(f"over: {result.path} is not a plane over {' and '.join(file.parameters)}")
         if options.variable is not None and options.variable not in planes.variables(result):

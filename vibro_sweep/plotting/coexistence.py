@@ -7,12 +7,12 @@ import numpy as np
 from matplotlib.collections import LineCollection, PolyCollection
 
 from vibro_sweep.oscillator.catalogue import BY_NAME
+from vibro_sweep.plotting.drawn_sweep import DrawnSweep, Point
 from vibro_sweep.plotting.families import KINDS, MARKERS, kind, named
 from vibro_sweep.plotting.figure import Panels
 from vibro_sweep.plotting.kind import picture
 from vibro_sweep.plotting.labels import arrange, legend_below, overlap
 from vibro_sweep.plotting.style import at_section, edges, marked, type_size
-from vibro_sweep.plotting.sweep_result import Point, Result
 from vibro_sweep.plotting.sweeps import mark_grazing
 
 NARROW = 0.012  # of the axis; the period of a window is written over it where it is wider
@@ -29,32 +29,32 @@ class Share(NamedTuple):
     mean: float  # of x1 over the section points
 
 
-def shows(result: Result) -> bool:
+def shows(result: DrawnSweep) -> bool:
     """A sweep over one key with several starts; attractors."""
     return len(result.sweep) == 1 and len(result.starts) > 1 and "attractor" in result
 
 
 @picture(shows)
-def coexistence(result: Result) -> Panels:
+def coexistence(result: DrawnSweep) -> Panels:
     """Over the parameter: section points of each attractor, or their mean; below, the starts' shares, stacked."""
     ((key, values),) = result.sweep.items()
     order = np.argsort(values)  # a sweep may run downwards; an axis does not
-    values, found = values[order], _shares(result, order)
+    values, attractors = values[order], _shares(result, order)
 
     def draw(axes):
         above, below = axes[:, 0]
-        _points(above, result, values, found)
-        _stacks(below, values, found)
+        _points(above, result, values, attractors)
+        _stacks(below, values, attractors)
         if key == "b":
             mark_grazing((above, below), result, values[0], values[-1])
         below.set(xlim=edges(values)[[0, -1]], ylim=(0, 1), xlabel=result.axis(key), ylabel=BY_NAME["share"].label)
-        there = {one.kind for one in found}
-        shown = [(which, colour) for which, (_, colour) in KINDS.items() if which in there]
+        kinds = {attractor.kind for attractor in attractors}
+        shown = [(which, colour) for which, (_, colour) in KINDS.items() if which in kinds]
         marks = {named(which, result.meeting): marked(colour, MARKERS.get(which, "")) for which, colour in shown}
         marks |= {line.get_label(): line for line in above.lines if line.get_gid() == "grazing"}
         legend_below(axes, list(marks.values()), 3, labels=list(marks))
         above.figure.align_ylabels(axes[:, 0])
-        _name_windows(below, values, found)
+        _name_windows(below, values, attractors)
 
     title = result.title(f"Coexisting attractors; {len(result.starts)} starts at each value")
     return Panels(title, 5.8, draw, 2, grid={"sharex": True, "height_ratios": (1.6, 1)})
@@ -67,69 +67,69 @@ def _shares(result, order) -> list[Share]:
     number = result.array("attractor_id")[order] if "attractor_id" in result else np.full(label.shape, np.nan)
     average = result.array("average")[order]
     rank = list(KINDS)
-    found = []
+    attractors = []
     for place in range(len(label)):
         here = []
-        for one in np.unique(label[place][label[place] >= 0]):
-            members = np.flatnonzero(label[place] == one)
+        for rank_here in np.unique(label[place][label[place] >= 0]):
+            members = np.flatnonzero(label[place] == rank_here)
             first, least = members[0], int(period[place, members].min())
             which, mean = str(kind(least, average[place, first])), average[place, members, 0].mean()
             known = np.nan_to_num(number[place, first])
             here.append((known, Share(place, (order[place], first), which, least, share[place, first], mean)))
-        here.sort(key=lambda one: (rank.index(one[1].kind), one[0], one[1].period, -one[1].share))
-        found += [one for _, one in here]
-    return found
+        here.sort(key=lambda pair: (rank.index(pair[1].kind), pair[0], pair[1].period, -pair[1].share))
+        attractors += [share for _, share in here]
+    return attractors
 
 
-def _points(ax, result, values, found):
+def _points(ax, result, values, attractors):
     """x1 at the section, of one orbit on each attractor; its mean where the points are not stored."""
     stored = "x1" in result and "phase" not in result
     ax.set_ylabel(("" if stored else "mean of ") + at_section("x1") + result.unit("x1"))
     size = np.clip(60 / np.sqrt(len(values)), 1.5, 6) * (0.5 if stored else 1)
     for which, (_, colour) in KINDS.items():
-        chosen = [one for one in found if one.kind == which and which != "unsettled"]
-        y = [result.one("x1", Point(one.point, one.point[:1], "")) if stored else [one.mean] for one in chosen]
-        x = [np.full(len(points), values[one.place]) for one, points in zip(chosen, y, strict=True)]
+        chosen = [attractor for attractor in attractors if attractor.kind == which and which != "unsettled"]
+        y = [result.at_point("x1", Point(a.point, a.point[:1], "")) if stored else [a.mean] for a in chosen]
+        x = [np.full(len(points), values[attractor.place]) for attractor, points in zip(chosen, y, strict=True)]
         if chosen:
             scale = 1.0 if MARKERS[which] == "." else 0.7  # that one is drawn at half its size
             dots = {"markersize": scale * size, "markeredgewidth": 0, "rasterized": True}
             ax.plot(np.concatenate(x), np.concatenate(y), MARKERS[which], color=colour, **dots)
 
 
-def _stacks(ax, values, found):
+def _stacks(ax, values, attractors):
     """A column for each value, of one part for each attractor; a line between parts of one colour."""
     borders, top = edges(values), np.zeros(len(values))
     parts, colours, seams = [], [], []
-    for before, one in itertools.pairwise([None, *found]):
-        left, right, low = borders[one.place], borders[one.place + 1], top[one.place]
-        top[one.place] = high = low + one.share
+    for before, attractor in itertools.pairwise([None, *attractors]):
+        left, right, low = borders[attractor.place], borders[attractor.place + 1], top[attractor.place]
+        top[attractor.place] = high = low + attractor.share
         parts.append([(left, low), (right, low), (right, high), (left, high)])
-        colours.append(KINDS[one.kind][1])
-        if before and (before.place, before.kind) == (one.place, one.kind):
+        colours.append(KINDS[attractor.kind][1])
+        if before and (before.place, before.kind) == (attractor.place, attractor.kind):
             seams.append([(left, low), (right, low)])
     ax.add_collection(PolyCollection(parts, facecolors=colours, linewidth=0))
     ax.add_collection(LineCollection(seams, colors="white", linewidth=0.6))
 
 
-def _name_windows(ax, values, found):
+def _name_windows(ax, values, attractors):
     """Over each window the period of the motion that most starts reach."""
     widest = {}  # place -> the attractor
-    for one in found:
-        if one.place not in widest or one.share > widest[one.place].share:
-            widest[one.place] = one
+    for attractor in attractors:
+        if attractor.place not in widest or attractor.share > widest[attractor.place].share:
+            widest[attractor.place] = attractor
     arrange(ax.figure)
-    borders, taken = edges(values), []
-    for period, window in itertools.groupby(widest.values(), key=lambda one: one.period):
-        places = [one.place for one in window]
+    borders, boxes = edges(values), []
+    for period, window in itertools.groupby(widest.values(), key=lambda attractor: attractor.period):
+        places = [attractor.place for attractor in window]
         left, right = borders[places[0]], borders[places[-1] + 1]
         if period > 0 and right - left > NARROW * (borders[-1] - borders[0]):
             above = {"xy": ((left + right) / 2, 1.0), "xycoords": ax.get_xaxis_transform(), "xytext": (0, 2)}
             text = ax.annotate(f"{period}", **above, textcoords="offset points", ha="center", fontsize=type_size(7))
             box = text.get_window_extent().get_points()
-            if any(overlap(box, other) for other in taken):
+            if any(overlap(box, box_before) for box_before in boxes):
                 text.remove()
             else:
-                taken.append(box)
+                boxes.append(box)
     ax.annotate(
         "period", (1.012, 1.0), (0, 2), xycoords="axes fraction", textcoords="offset points", fontsize=type_size(7)
     )

@@ -1,15 +1,15 @@
 """The force of compliant stops along a motion: over time, and against the gap as a loop."""
 
 from vibro_sweep.plotting.drawn_motion import force, legend
+from vibro_sweep.plotting.drawn_sweep import DrawnSweep
 from vibro_sweep.plotting.figure import Panels
 from vibro_sweep.plotting.kind import picture
 from vibro_sweep.plotting.orbit_pictures import FINER, shows_trajectory
 from vibro_sweep.plotting.stored_motion import stored_motion
 from vibro_sweep.plotting.style import stop_names, symbol
-from vibro_sweep.plotting.sweep_result import Result
 
 
-def shows(result: Result) -> bool:
+def shows(result: DrawnSweep) -> bool:
     """A trajectory; a compliant stop."""
     return shows_trajectory(result) and any(
         result.compliance(side, point.place) for point in result.points(1) for side in result.sides
@@ -17,7 +17,7 @@ def shows(result: Result) -> bool:
 
 
 @picture(shows, of_orbits=True)
-def contact_force(result: Result) -> Panels:
+def contact_force(result: DrawnSweep) -> Panels:
     """The force of the compliant stops over time; beside it against the gap, where the area of a loop is what the stop
     takes in a contact. One row an orbit."""
     points, name = result.points(), "x1" if result.contact_normal is None else "gap"

@@ -3,19 +3,19 @@
 import numpy as np
 
 from vibro_sweep.plotting.drawn_motion import legend
+from vibro_sweep.plotting.drawn_sweep import DrawnSweep
 from vibro_sweep.plotting.figure import Panels
 from vibro_sweep.plotting.kind import picture
 from vibro_sweep.plotting.style import DASHES, INK, exponent, exponent_colour, exponents_name, limits
-from vibro_sweep.plotting.sweep_result import Result
 
 
-def shows_convergence(result: Result) -> bool:
+def shows_convergence(result: DrawnSweep) -> bool:
     """Exponents as they converge."""
     return "lyapunov_running" in result
 
 
 @picture(shows_convergence, of_orbits=True)
-def convergence(result: Result) -> Panels:
+def convergence(result: DrawnSweep) -> Panels:
     """The spectrum as it was computed, period by period: lambda_1 beside zero, and below all of them. Up to two orbits.
 
     Where the file has them: a dashed line at each final value, around it a band in which zero would not differ from it.
@@ -30,7 +30,7 @@ def _draw(grid, result, points) -> None:
     periods = result.coordinate("elapsed")
     settled = slice(len(periods) // 10, None)
     for (largest, spectrum), point in zip(grid.T, points, strict=True):
-        running = np.where(np.isfinite(values := result.one("lyapunov_running", point)), values, np.nan)
+        running = np.where(np.isfinite(values := result.at_point("lyapunov_running", point)), values, np.nan)
         for i in range(running.shape[1]):
             spectrum.plot(periods, running[:, i], color=exponent_colour(i), label=exponent(i + 1), zorder=3 - i / 9)
         order = np.argsort(-np.nan_to_num(running[-1], nan=-np.inf))
@@ -44,7 +44,7 @@ def _draw(grid, result, points) -> None:
         spectrum.set_xlim(0, periods[-1])
     for row, shown in zip(grid, (slice(0, 1), slice(None)), strict=True):
         values = [
-            np.sort(result.one("lyapunov_running", point)[settled], axis=1)[:, ::-1][:, shown] for point in points
+            np.sort(result.at_point("lyapunov_running", point)[settled], axis=1)[:, ::-1][:, shown] for point in points
         ]
         finite = np.concatenate([v[np.isfinite(v)] for v in values] + [[0.0]])
         row[0].set_ylim(limits(finite))
@@ -56,9 +56,9 @@ def _draw(grid, result, points) -> None:
 
 def _final_values(panels, result, point) -> str:
     """Draw the exponents of the file, and how far their errors reach; the first of them as text."""
-    final = result.one("lyapunov", point)
+    final = result.at_point("lyapunov", point)
     known = "lyapunov_error" in result
-    reach = result.interval(result.one("lyapunov_error", point)) if known else np.full(len(final), np.nan)
+    reach = result.interval(result.at_point("lyapunov_error", point)) if known else np.full(len(final), np.nan)
     errors = f"± {result.significant:.2g} standard errors"
     for ax, count in zip(panels, (1, len(final)), strict=True):
         for i, (value, spread) in enumerate(list(zip(final, reach, strict=True))[:count]):

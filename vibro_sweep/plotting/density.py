@@ -44,19 +44,19 @@ def counts(points, low, high, group, counted=None) -> np.ndarray:
     for first in range(0, columns, step):
         rows = slice(first * group, (first + step) * group)
         height = (points[rows] - low) * (ROWS / (high - low))
-        there = (height >= 0) & (height <= ROWS)
+        inside = (height >= 0) & (height <= ROWS)
         if counted is not None:
-            there &= counted[rows, :, None]
+            inside &= counted[rows, :, None]
         column = np.arange(len(height), dtype=np.int32) // group
-        column = np.broadcast_to(column.reshape(-1, *[1] * (points.ndim - 1)), height.shape)[there]
-        row = np.minimum(height[there].astype(np.int32), ROWS - 1)
+        column = np.broadcast_to(column.reshape(-1, *[1] * (points.ndim - 1)), height.shape)[inside]
+        row = np.minimum(height[inside].astype(np.int32), ROWS - 1)
         width = min(step, columns - first)
-        found = np.bincount(column * ROWS + row, minlength=ROWS * width)
-        cells[:, first : first + width] = found.reshape(width, ROWS).T
+        hits = np.bincount(column * ROWS + row, minlength=ROWS * width)
+        cells[:, first : first + width] = hits.reshape(width, ROWS).T
     return cells
 
 
-def one(ax, cloud: Cloud):
+def of_all(ax, cloud: Cloud):
     """The density on a logarithmic colour scale, white where there are no points; periodic orbits as lines."""
     x, y, group = _grid(ax, cloud.values)
     lines = _repeated(cloud.repeats, group)

@@ -8,20 +8,20 @@ from matplotlib import patheffects
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from vibro_sweep.plotting.decades import scale_of
 from vibro_sweep.plotting.figure import Panels
 from vibro_sweep.plotting.labels import arrange, legend_below, name_beside
 from vibro_sweep.plotting.plot_options import PlotOptions
+from vibro_sweep.plotting.scales import scale_of
 from vibro_sweep.plotting.style import INK, axis_name, with_unit
 from vibro_sweep.tables.bifurcations import BY_NAME, CODIMENSION_TWO, TYPES
 
-COLOURS = {one.name: one.curve_colour for one in TYPES if one.condition}
+COLOURS = {row.name: row.curve_colour for row in TYPES if row.condition}
 # of orbits of different periods, beside the colours of the types but for the graze's
 ORBITS = ("#8a8a96", "#5ce4ff", "#521433", "#9aca91", "#425a8a", "#ff5c5c", "#8a425a", "#660099", "#ff00d5")
 MOSTLY, DIFFERENT = 0.6, 3  # from this part of the curves on, and so many periods, one type is distinguished by periods
 VIRTUAL = (0, (1, 1.5))  # dots of what is not a motion
 MANY = 100  # curves
-SHORT = {one.name: one.label for one in CODIMENSION_TWO if one.label}
+SHORT = {row.name: row.label for row in CODIMENSION_TWO if row.label}
 
 
 class Drawn(NamedTuple):
@@ -68,7 +68,7 @@ def frame_of(ax) -> tuple[tuple[float, float], tuple[float, float]]:
 
 def scale(ax, curves: list[Drawn], names) -> None:
     """Set the scales of the axes, of these two numbers."""
-    across, up = (np.concatenate(values) for values in zip(*((one.p, one.q) for one in curves), strict=True))
+    across, up = (np.concatenate(values) for values in zip(*((curve.p, curve.q) for curve in curves), strict=True))
     ax.set(xscale=scale_of(names[0], across), yscale=scale_of(names[1], up))
 
 
@@ -136,22 +136,22 @@ def handles(curves: list[Drawn], frame=None) -> list[Line2D]:
     if frame is not None:
         curves = [_within(curve, *frame) for curve in curves]
         curves = [curve for curve in curves if len(curve.p)]
-    found = {}
+    result = {}
     for curve in sorted(curves, key=lambda curve: (list(COLOURS).index(curve.type), curve.period)):
         colour, label = _style(curve, by_period)
-        found.setdefault(label, Line2D([], [], color=colour, lw=1.2, label=label))
-    found = list(found.values())
+        result.setdefault(label, Line2D([], [], color=colour, lw=1.2, label=label))
+    result = list(result.values())
     if any(curve.bounds is not None and not curve.bounds.all() for curve in curves):
-        found.append(Line2D([], [], color=INK, lw=0.5, label="of unstable orbits"))
+        result.append(Line2D([], [], color=INK, lw=0.5, label="of unstable orbits"))
     if any(curve.virtual.any() for curve in curves):
-        found.append(Line2D([], [], color=INK, ls=VIRTUAL, lw=0.8, label="virtual"))
-    there = {kind for kind, _ in points_of(curves)}
-    if there and len(curves) > MANY:
-        found.append(Line2D([], [], **_dot(2.0) | {"mfc": INK}, label="points of codimension two"))
+        result.append(Line2D([], [], color=INK, ls=VIRTUAL, lw=0.8, label="virtual"))
+    kinds = {kind for kind, _ in points_of(curves)}
+    if kinds and len(curves) > MANY:
+        result.append(Line2D([], [], **_dot(2.0) | {"mfc": INK}, label="points of codimension two"))
     else:
-        named = [one for one in CODIMENSION_TWO if one.name in there]
-        found += [Line2D([], [], **_dot(3.0), label=f"{one.label} {_words(one.name)}") for one in named]
-    return found
+        named = [row for row in CODIMENSION_TWO if row.name in kinds]
+        result += [Line2D([], [], **_dot(3.0), label=f"{row.label} {_words(row.name)}") for row in named]
+    return result
 
 
 def _words(name: str) -> str:
@@ -170,7 +170,7 @@ def _dot(size: float) -> dict:
 def _within(curve: Drawn, across, up) -> Drawn:
     """The part of a curve that lies in a frame."""
     inside = (across[0] <= curve.p) & (curve.p <= across[1]) & (up[0] <= curve.q) & (curve.q <= up[1])
-    special = [one for one in curve.special if across[0] <= one[1] <= across[1] and up[0] <= one[2] <= up[1]]
+    special = [point for point in curve.special if across[0] <= point[1] <= across[1] and up[0] <= point[2] <= up[1]]
     bounds = None if curve.bounds is None else curve.bounds[inside]
     return curve._replace(
         p=curve.p[inside], q=curve.q[inside], virtual=curve.virtual[inside], special=special, bounds=bounds

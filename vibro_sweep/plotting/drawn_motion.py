@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from vibro_sweep.plotting import rests
+from vibro_sweep.plotting import sticking_marks
 from vibro_sweep.plotting.labels import legend_below
 from vibro_sweep.plotting.style import DASHES, FAINT, IMPACT, INK, LEFT, RIGHT
 from vibro_sweep.results.motion import Motion
@@ -20,7 +20,7 @@ def portrait(ax: Axes, motion: Motion, x: str, y: str, arrows_at=ARROWS_AT) -> N
     and its velocity."""
     ax.plot(motion[x], motion[y], color=INK, lw=0.7)
     arrows(ax, motion.t, motion[x], motion[y], arrows_at)
-    rests.along(ax, motion, x, y)
+    sticking_marks.along(ax, motion, x, y)
     contacts(ax, motion, x, y)
     if (x, y) == motion.names:
         for _, side, before, after in motion.impacts:
@@ -31,9 +31,9 @@ def portrait(ax: Axes, motion: Motion, x: str, y: str, arrows_at=ARROWS_AT) -> N
 def contacts(ax: Axes, motion: Motion, x: str, y: str) -> None:
     """Mark contacts with compliant stops in the plane of two numbers of a motion, or over its time "t"."""
     for side in motion.stops:
-        there = motion.force(side)[0] != 0
-        if there.any():
-            ax.plot(*(np.where(there, motion[name], np.nan) for name in (x, y)), **CONTACT)
+        pressed = motion.force(side)[0] != 0
+        if pressed.any():
+            ax.plot(*(np.where(pressed, motion[name], np.nan) for name in (x, y)), **CONTACT)
 
 
 def walls(ax: Axes, stops: dict[int, float], soft: Collection[int], names: dict[int, str]) -> None:

@@ -73,20 +73,20 @@ class Picture(Figure):
     def entitle(self, title: str) -> None:
         """The title above all panels, in as many lines as it takes."""
         if self.narrow:
-            title = "\n".join(line for one in title.split("\n") for line in self._wrapped(one))
+            title = "\n".join(line for whole in title.split("\n") for line in self._wrapped(whole))
         self.suptitle(title)
 
     def _wrapped(self, line: str) -> list[str]:
         """The text in lines as wide as the page, broken behind commas and semicolons, else between words."""
-        found = [""]
+        lines = [""]
         for part in re.split(r"(?<=[,;]) (?=\S)", line):
             for piece in [part] if self._fits(part) else part.split(" "):
-                longer = f"{found[-1]} {piece}".strip()
-                if found[-1] and not self._fits(longer):
-                    found.append(piece)
+                longer = f"{lines[-1]} {piece}".strip()
+                if lines[-1] and not self._fits(longer):
+                    lines.append(piece)
                 else:
-                    found[-1] = longer
-        return found
+                    lines[-1] = longer
+        return lines
 
     def _fits(self, line: str) -> bool:
         text = self.text(0, 0, line, size=matplotlib.rcParams["figure.titlesize"])

@@ -8,13 +8,13 @@ import numpy as np
 from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
 from matplotlib.patches import Rectangle
 
+from vibro_sweep.plotting.drawn_sweep import DrawnSweep, PlotError
 from vibro_sweep.plotting.figure import Panels, Picture
 from vibro_sweep.plotting.kind import picture
 from vibro_sweep.plotting.orbit_pictures import displacements, shows_trajectory
 from vibro_sweep.plotting.plot_options import PlotOptions
 from vibro_sweep.plotting.stored_motion import stored_motion
 from vibro_sweep.plotting.style import DASHES, FAINT, INK, SECTION, symbol
-from vibro_sweep.plotting.sweep_result import PlotError, Result
 from vibro_sweep.results.motion import Motion
 
 SUFFIXES = (".gif", ".mp4")
@@ -62,7 +62,7 @@ class _OfAnOrbit(Film):
             right.axvline(stop, color=INK, lw=0.8, ls=DASHES)
         left.set(xlabel="$t / T$ (forcing periods)", ylabel=symbol(name) + unit, xlim=(self.times[0], self.times[-1]))
         right.set(xlabel=symbol(name) + unit)
-        rows = {one: motion[one] for one in dict.fromkeys((name, *masses))}
+        rows = {position: motion[position] for position in dict.fromkeys((name, *masses))}
         places = list(motion.stops.values())
         self.boxes, ends = [], np.concatenate([*rows.values(), places])
         low, high = ends.min(), ends.max()
@@ -98,7 +98,7 @@ class _OfAnOrbit(Film):
 
 
 @picture(shows_trajectory, of_orbits=True)
-def film(result: Result) -> Panels:
+def film(result: DrawnSweep) -> Panels:
     """The masses between their stops, time history and phase portrait of an orbit; moving in a .gif or .mp4."""
     point = result.points(1)[0]
     title = f"{result.title('Film')}\n{point.label}" if point.label else result.title("Film")

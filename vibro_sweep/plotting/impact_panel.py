@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from vibro_sweep.plotting import decades, rests
+from vibro_sweep.plotting import scales, sticking_marks
 from vibro_sweep.plotting.spectrum_panel import branches, curve, margin_note
 from vibro_sweep.plotting.style import FAINT, INK, LEFT, RIGHT
 
@@ -24,7 +24,7 @@ def impact_counts(ax, result, values, order):
     if len(sides) == 1 < len(result.sides):  # the other one is compliant
         which = f"{'right' if sides[0] > 0 else 'left'} stop"
     ax.set_ylabel("\n".join(filter(None, ("impacts" if per == 1 else "impacts / $T$", which))))
-    rests.tint(ax, result, values, order)
+    sticking_marks.tint(ax, result, values, order)
     if result.follow:
         shown = right + left
         branches(ax, values, shown)
@@ -40,6 +40,6 @@ def impact_counts(ax, result, values, order):
         if -1 in sides:
             curve(ax, values, left, color=LEFT, label="left", lw=0.8)
             margin_note(ax, 0.25, "left", LEFT, fontsize=8)
-    decades.scale_axis(ax, shown)
+    scales.scale_axis(ax, shown)
     if not np.any(shown > 0) and not result.failed:
         ax.text(0.5, 0.5, NONE, transform=ax.transAxes, ha="center", color=FAINT)

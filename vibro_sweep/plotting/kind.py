@@ -3,24 +3,24 @@
 from collections.abc import Callable
 from typing import NamedTuple
 
+from vibro_sweep.plotting.drawn_sweep import DrawnSweep
 from vibro_sweep.plotting.figure import Panels
-from vibro_sweep.plotting.sweep_result import Result
 
 
 class Kind(NamedTuple):
     """A kind of picture: whether a result has what it needs, as its docstring says; what it is made of; variables to
     choose among; whether it shows single orbits; and whether b may be relative to b*."""
 
-    shows: Callable[[Result], bool]
-    panels: Callable[[Result], Panels]
-    variables: Callable[[Result], tuple[str, ...]] = lambda result: ()
+    shows: Callable[[DrawnSweep], bool]
+    panels: Callable[[DrawnSweep], Panels]
+    variables: Callable[[DrawnSweep], tuple[str, ...]] = lambda result: ()
     of_orbits: bool = False
     relative: bool = False
 
 
 def picture(
-    shows: Callable[[Result], bool],
-    variables: Callable[[Result], tuple[str, ...]] = lambda result: (),
+    shows: Callable[[DrawnSweep], bool],
+    variables: Callable[[DrawnSweep], tuple[str, ...]] = lambda result: (),
     of_orbits: bool = False,
     relative: bool = False,
 ) -> Callable[[Callable[..., Panels]], Callable[..., Panels]]:

@@ -36,12 +36,12 @@ def name_beside(ax, names, places, lines=(), taken=(), most=None) -> list[np.nda
     for name, place, mark in zip(names, places, marks, strict=True):
         if most is not None and len(written) >= most:
             break
-        if any(name == other and np.hypot(*(mark - at)) < scale * SAME for other, at in written):
+        if any(name == name_before and np.hypot(*(mark - at)) < scale * SAME for name_before, at in written):
             continue
-        found = _free_corner(sizes[name], mark, scale, marks, lines, frame, boxes)
-        if found is None:
+        free_corner = _free_corner(sizes[name], mark, scale, marks, lines, frame, boxes)
+        if free_corner is None:
             continue
-        (right, up), box = found
+        (right, up), box = free_corner
         style = _NAME | {
             "size": type_size(6),
             "ha": "left" if right > 0 else "right",
@@ -83,9 +83,9 @@ def _free_corner(size, mark, scale, marks, lines, frame, taken):
     return best and best[1:]
 
 
-def overlap(one: np.ndarray, other: np.ndarray) -> bool:
+def overlap(first: np.ndarray, second: np.ndarray) -> bool:
     """Whether two boxes (2, 2) have a common point."""
-    return bool(np.all((one[0] <= other[1]) & (other[0] <= one[1])))
+    return bool(np.all((first[0] <= second[1]) & (second[0] <= first[1])))
 
 
 def _within(points: np.ndarray, box: np.ndarray) -> int:

@@ -3,8 +3,9 @@
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 
-from vibro_sweep.plotting import rests
+from vibro_sweep.plotting import sticking_marks
 from vibro_sweep.plotting.drawn_motion import contacts, legend, levels, portrait, walls
+from vibro_sweep.plotting.drawn_sweep import DrawnSweep
 from vibro_sweep.plotting.figure import Panels
 from vibro_sweep.plotting.kind import picture
 from vibro_sweep.plotting.stored_motion import GAP, gap_of, stored_motion
@@ -22,29 +23,28 @@ from vibro_sweep.plotting.style import (
     stop_names,
     symbol,
 )
-from vibro_sweep.plotting.sweep_result import Result
 from vibro_sweep.plotting.sweeps import section_variables
 from vibro_sweep.tables.coordinates import MOST_MASSES, state
 
 FINER = 32  # times the samples of a file, where a compliant stop is pressed
 
 
-def shows_trajectory(result: Result) -> bool:
+def shows_trajectory(result: DrawnSweep) -> bool:
     """A trajectory."""
     return all(name in result for name in ("trajectory_x1", "trajectory_v1", "t_over_T"))
 
 
-def shows_both_masses(result: Result) -> bool:
+def shows_both_masses(result: DrawnSweep) -> bool:
     """A trajectory with the second mass."""
     return shows_trajectory(result) and "trajectory_x2" in result
 
 
-def shows_section(result: Result) -> bool:
+def shows_section(result: DrawnSweep) -> bool:
     """Section points."""
     return "x1" in result or "v1" in result
 
 
-def _portraits(result, what, draw) -> Panels:
+def _portraits(result, subject, draw) -> Panels:
     """A panel for each orbit; draw(ax, point)."""
     points = result.points()
     columns = min(len(points), 2)
@@ -58,10 +58,10 @@ def _portraits(result, what, draw) -> Panels:
             ax.set_title(point.label)
         legend(axes)
 
-    return Panels(result.title(what), 3.0 * rows + 0.7 if columns > 1 else 5.0, draw_all, rows, columns)
+    return Panels(result.title(subject), 3.0 * rows + 0.7 if columns > 1 else 5.0, draw_all, rows, columns)
 
 
-def _histories(result, what, draw, label) -> Panels:
+def _histories(result, subject, draw, label) -> Panels:
     """The orbits below each other; draw(ax, point). label : of the common abscissa"""
     points = result.points()
 
@@ -73,10 +73,10 @@ def _histories(result, what, draw, label) -> Panels:
         legend(axes)
 
     height = 1.5 * len(points) + 0.9 if len(points) > 1 else 3.2
-    return Panels(result.title(what), height, draw_all, len(points), grid={"sharex": True})
+    return Panels(result.title(subject), height, draw_all, len(points), grid={"sharex": True})
 
 
-def displacements(result: Result) -> tuple[str, ...]:
+def displacements(result: DrawnSweep) -> tuple[str, ...]:
     """The displacements that a trajectory of the file has; first the gap where that is not x1."""
     gap = ("gap",) if result.contact_normal is not None else ()
     names = (f"x{n}" for n in range(1, MOST_MASSES + 1))
@@ -93,7 +93,7 @@ def _symbol(name: str) -> str:
 
 
 @picture(shows_trajectory, displacements, of_orbits=True)
-def phase_portrait(result: Result) -> Panels:
+def phase_portrait(result: DrawnSweep) -> Panels:
     """x1 and v1 between the stops, or another displacement and its velocity, one panel an orbit; impacts, and the state
     at each forcing period. Where the gap is not x1, that and its velocity."""
     x_name = result.options.variable or displacements(result)[0]
@@ -115,7 +115,7 @@ def phase_portrait(result: Result) -> Panels:
 
 
 @picture(shows_both_masses, of_orbits=True)
-def configuration(result: Result) -> Panels:
+def configuration(result: DrawnSweep) -> Panels:
     """The first two masses' displacements against each other (the paper's figure 4), one panel an orbit."""
 
     def draw(ax, point):
@@ -144,12 +144,12 @@ def _slanted_walls(ax, result, motion):
     ax.set(xlim=frame[0], ylim=frame[1])
 
 
-def shows_poincare(result: Result) -> bool:
+def shows_poincare(result: DrawnSweep) -> bool:
     """Section points with a displacement and its velocity; of impacts the phase and the velocity."""
     return bool(abscissae(result))
 
 
-def abscissae(result: Result) -> tuple[str, ...]:
+def abscissae(result: DrawnSweep) -> tuple[str, ...]:
     """The abscissae of a Poincare plot, the default first; the ordinate is the velocity."""
     if "phase" in result:
         return ("phase",) if "v1" in result and not result.model() else ()  # the map has one phase
@@ -157,13 +157,13 @@ def abscissae(result: Result) -> tuple[str, ...]:
 
 
 @picture(shows_poincare, abscissae, of_orbits=True)
-def poincare(result: Result) -> Panels:
+def poincare(result: DrawnSweep) -> Panels:
     """Section points in the plane of x1 and v1, or of x2 and v2; of impacts of phase and v1. One panel an orbit."""
     x_name = result.options.variable or abscissae(result)[0]
     v_name = "v1" if x_name == "phase" else _velocity(x_name)
 
     def draw(ax, point):
-        x, v = (result.one(name, point) for name in (x_name, v_name))
+        x, v = (result.at_point(name, point) for name in (x_name, v_name))
         size = np.clip(60 / np.sqrt(_different(x)), 2, 8)
         ax.plot(x, v, ".", color=SECTION, markersize=size, markeredgewidth=0, rasterized=True)
         if np.isfinite(x).any():
@@ -188,7 +188,9 @@ def _different(values) -> int:
 def _mark_sections(ax, result, point, x_name, y_name):
     if "trajectory_section_x1" in result:
         names = state(result.masses)
-        here = {name: result.one(f"trajectory_section_{name}", point) for name in names if _at_section(name) in result}
+        here = {
+            name: result.at_point(f"trajectory_section_{name}", point) for name in names if _at_section(name) in result
+        }
         if result.contact_normal is not None:
             here |= {name: gap_of(here, result.contact_normal, letter) for name, letter in GAP.items()}
         x, y = here[x_name], here[y_name]
@@ -199,13 +201,13 @@ def _at_section(name: str) -> str:
     return f"trajectory_section_{name}"
 
 
-def coordinates(result: Result) -> tuple[str, ...]:
+def coordinates(result: DrawnSweep) -> tuple[str, ...]:
     """The coordinates that a trajectory of the file has."""
     return tuple(name for name in state(MOST_MASSES) if f"trajectory_{name}" in result)
 
 
 @picture(shows_trajectory, coordinates, of_orbits=True)
-def history(result: Result) -> Panels:
+def history(result: DrawnSweep) -> Panels:
     """All displacements over time, or one coordinate, one panel an orbit, the stops as lines."""
     chosen = result.options.variable
     gap = [] if result.contact_normal is None else ["gap"]
@@ -219,7 +221,7 @@ def history(result: Result) -> Panels:
             shown = motion if jumps else motion.joined()
             ax.plot(shown.t, shown[name], label=_symbol(name), **styles[min(i, len(styles) - 1)])
             if name == motion.names[0]:
-                rests.along(ax, shown, "t", name)
+                sticking_marks.along(ax, shown, "t", name)
                 contacts(ax, shown, "t", name)
         if motion.names[0] in names:
             levels(ax, motion, stop_names(result))
@@ -230,7 +232,7 @@ def history(result: Result) -> Panels:
 
 
 @picture(shows_section, section_variables, of_orbits=True)
-def iteration(result: Result) -> Panels:
+def iteration(result: DrawnSweep) -> Panels:
     """The section's coordinate over the iterations (the paper's figures 7 and 8), one panel an orbit."""
     at_impact = "phase" in result
     name = result.options.variable or section_variables(result)[0]
@@ -240,7 +242,7 @@ def iteration(result: Result) -> Panels:
 
     def draw(ax, point):
         nonlocal most
-        values = result.one(name, point)
+        values = result.at_point(name, point)
         ax.plot(values, "-", color=FAINT, lw=0.3)
         ax.plot(values, ".", color=INK, markersize=np.clip(60 / np.sqrt(len(values)), 3, 8), markeredgewidth=0)
         ax.set_ylabel((before_impact if at_impact else symbol)(name) + result.unit(name))

@@ -18,10 +18,10 @@ from matplotlib.figure import Figure
 
 from vibro_sweep.files import disk
 from vibro_sweep.files.opening import open_raw
+from vibro_sweep.plotting.drawn_sweep import PlotError
 from vibro_sweep.plotting.film import SUFFIXES as FILMS
 from vibro_sweep.plotting.film import Film
 from vibro_sweep.plotting.style import STYLE
-from vibro_sweep.plotting.sweep_result import PlotError
 
 SUFFIXES = (".png", ".svg", ".pdf")  # FILMS have more
 MOST = 2**28  # bytes of a picture that is looked at

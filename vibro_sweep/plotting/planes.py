@@ -10,13 +10,14 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
-from vibro_sweep.plotting import decades, rests, strip
-from vibro_sweep.plotting.decades import along_axis, in_proportion
+from vibro_sweep.plotting import scales, sticking_marks, window_strip
+from vibro_sweep.plotting.drawn_sweep import DrawnSweep, PlotError
 from vibro_sweep.plotting.figure import Panels
 from vibro_sweep.plotting.kind import picture
 from vibro_sweep.plotting.labels import arrange, legend_below, thin_ticks
 from vibro_sweep.plotting.regions import name_regions
 from vibro_sweep.plotting.relative import axis_label, check_relative
+from vibro_sweep.plotting.scales import along_axis, in_proportion
 from vibro_sweep.plotting.style import (
     DASHES,
     DIVERGING,
@@ -33,10 +34,9 @@ from vibro_sweep.plotting.style import (
     exponents_name,
     grazing_of,
 )
-from vibro_sweep.plotting.sweep_result import PlotError, Result
 from vibro_sweep.tables.observables import VARIABLES
 
-_OF_A_POINT = {one.name: one.label for one in VARIABLES if not one.dimensions}
+_OF_A_POINT = {row.name: row.label for row in VARIABLES if not row.dimensions}
 
 CURVES = {"b_star": DASHES, "b_right": DASHES, "b_left": ":"}
 
@@ -50,19 +50,19 @@ class Overlay(NamedTuple):
     name: Callable
 
 
-def shows(result: Result) -> bool:
+def shows(result: DrawnSweep) -> bool:
     """A sweep over two keys; lyapunov, section, impacts or energy."""
     shown = ("lyapunov", "period", "impacts_right", "impact_power")
     return len(result.sweep) == 2 and any(name in result for name in shown)
 
 
-def variables(result: Result) -> tuple[str, ...]:
+def variables(result: DrawnSweep) -> tuple[str, ...]:
     """Variables of the file that are one number a point."""
     return tuple(name for name in ("lyapunov", *_OF_A_POINT) if name in result)
 
 
 @picture(shows, variables, relative=True)
-def plane(result: Result, overlay: Overlay | None = None) -> Panels:
+def plane(result: DrawnSweep, overlay: Overlay | None = None) -> Panels:
     """lambda_1 and the period over the two parameters, side by side; where neither is stored the impacts, or their
     power.
 
@@ -74,9 +74,9 @@ def plane(result: Result, overlay: Overlay | None = None) -> Panels:
     """
     maps, note = _maps(result)
     of_states = all(key.startswith("start_") for key in result.sweep)
-    what = "Plane of initial states" if of_states else "Parameter plane"
+    subject = "Plane of initial states" if of_states else "Parameter plane"
     return Panels(
-        result.title(what + note), 4.4 if len(maps) > 1 else 5.4, lambda axes: _draw(axes[0], result, maps, overlay),
+        result.title(subject + note), 4.4 if len(maps) > 1 else 5.4, lambda axes: _draw(axes[0], result, maps, overlay),
         columns=len(maps), grid={"sharex": True, "sharey": True}, alone=True,
     )  # fmt: skip
 
@@ -104,10 +104,10 @@ def _draw(grid, result, maps, overlay) -> None:
             ax.set_ylabel(axis_label(y_key, relative, result.unit(y_key)))
         ax.patch.set(facecolor=NOT_COMPUTED, edgecolor=FAINT, hatch="///")
         ax.set(xlim=result.options.xlim or ax.get_xlim(), ylim=result.options.ylim or ax.get_ylim())
-        rests.cells(ax, result, columns, rows, corners)
+        sticking_marks.cells(ax, result, columns, rows, corners)
         _grazing_curve(ax, result)
         if result.options.windows is not None:
-            strip.ends_over(ax, result)
+            window_strip.ends_over(ax, result)
         if overlay is not None:
             overlay.draw(ax)
     zero = "lyapunov_error" in result and any(draw is _exponent and (values == 0).any() for draw, values in maps)
@@ -139,8 +139,8 @@ def _in_range(values, limits) -> tuple[np.ndarray, np.ndarray]:
 def _relative_corners(result, columns, rows) -> tuple[np.ndarray, np.ndarray]:
     """Corners of the cells, each (rows + 1, columns + 1), with b in parts of b*. Raises PlotError."""
     (x_key, x), (y_key, y) = result.sweep.items()
-    other, order = (x_key, columns) if y_key == "b" else (y_key, rows)
-    b_star = result.grazing(other).get("b_star")
+    other_key, order = (x_key, columns) if y_key == "b" else (y_key, rows)
+    b_star = result.grazing(other_key).get("b_star")
     check_relative(str(result.path), result.sweep, b_star)
     if result.options.windows is not None:
         raise PlotError("relative: ends of windows have b itself as their axis; leave out `relative` or `windows`")
@@ -154,11 +154,11 @@ def _grazing_curve(ax, result):
     keys = list(result.sweep)
     if "b" not in keys:
         return
-    other = keys[1 - keys.index("b")]
-    order = np.argsort(result.sweep[other])
+    other_key = keys[1 - keys.index("b")]
+    order = np.argsort(result.sweep[other_key])
     frame = ax.get_xlim(), ax.get_ylim()
-    for name, curve in result.grazing(other).items():
-        line = result.sweep[other][order], np.ones(len(order)) if result.options.relative else curve[order]
+    for name, curve in result.grazing(other_key).items():
+        line = result.sweep[other_key][order], np.ones(len(order)) if result.options.relative else curve[order]
         for style in ({"color": "white", "lw": 2.2}, {"color": INK, "lw": 1.0, "ls": CURVES[name], "gid": "grazing"}):
             ax.plot(*(line if keys[1] == "b" else line[::-1]), label=grazing_of(name), **style)
     ax.set(xlim=frame[0], ylim=frame[1])
@@ -179,9 +179,9 @@ def _legend(grid, gaps, options, overlay, more):
         if line.get_gid() == "grazing" and _visible(grid[0], line):
             curves[line.get_label()] = line.get_linestyle()
     handles += [Line2D([], [], color=INK, lw=1.0, ls=style, label=label) for label, style in curves.items()]
-    if any(one.get_gid() == "rest" for one in grid[0].collections):
-        handles.append(rests.patch())
-    hatched = [text for text, there in (("outside of the sweep", options.relative), ("no number", gaps)) if there]
+    if any(collection.get_gid() == "rest" for collection in grid[0].collections):
+        handles.append(sticking_marks.patch())
+    hatched = [text for text, present in (("outside of the sweep", options.relative), ("no number", gaps)) if present]
     if hatched:
         handles.append(Patch(facecolor=NOT_COMPUTED, edgecolor=FAINT, hatch="////", label=" or ".join(hatched)))
     if handles:
@@ -221,7 +221,7 @@ def _maps(result):
         maps.append((_amount("impacts in the recorded periods"), impacts[..., 0]))
     if not maps:
         maps.append((_amount(_OF_A_POINT["impact_power"]), shown(result.array("impact_power"))))
-    return [one for one in maps if np.isfinite(one[1]).any()] or maps[:1], note
+    return [shown for shown in maps if np.isfinite(shown[1]).any()] or maps[:1], note
 
 
 def _exponent(ax, x, y, values, unit):
@@ -254,7 +254,7 @@ def _amount(label):
     """Draws values on an even scale."""
 
     def draw(ax, x, y, values, unit):
-        image = _image(ax, x, y, values, cmap="viridis", norm=decades.norm(values.filled(np.nan)))
+        image = _image(ax, x, y, values, cmap="viridis", norm=scales.norm(values.filled(np.nan)))
         _bar(ax, image, label + unit)
 
     return draw

@@ -15,11 +15,11 @@ from vibro_sweep.checks.errors import ArgumentTypeError
 from vibro_sweep.checks.file_names import file_to_write
 from vibro_sweep.checks.refusals import not_allowed, shown
 from vibro_sweep.plotting import branch_diagram, charts, film
+from vibro_sweep.plotting.drawn_sweep import DrawnSweep, PlotError
 from vibro_sweep.plotting.kind import Kind
 from vibro_sweep.plotting.pictures import SUFFIXES, check_output, save
 from vibro_sweep.plotting.plot_options import PlotOptions, data_of, is_result
 from vibro_sweep.plotting.source import name_of, readable
-from vibro_sweep.plotting.sweep_result import PlotError, Result
 from vibro_sweep.tables.file_columns import CHART
 from vibro_sweep.tables.picture_kinds import PICTURES, Plottable
 
@@ -110,7 +110,7 @@ def plot(
         raise ArgumentTypeError(not_allowed("ax", ax, "matplotlib axes"))
     options = PlotOptions(at, variable, xlim, ylim, size, dpi, windows, over, relative, width)
     source = data_of("data", data)  # last: the Dataset of a branch takes longer than all checks
-    inputs = [one for one in (source, *options.beside) if isinstance(one, Path)]
+    inputs = [read for read in (source, *options.beside) if isinstance(read, Path)]
     place = None if output is None else file_to_write("output", output)
     if place is not None:
         kind = check_suffix(place, kind)
@@ -126,7 +126,7 @@ def kinds(data: "str | Path | xarray.Dataset") -> list[str]:
 
     Raises `PlotError` where it is not one of vibro-sweep's.
     """
-    with Result(data, PlotOptions()) as result:
+    with DrawnSweep(data, PlotOptions()) as result:
         return _kinds(result)
 
 
@@ -144,7 +144,7 @@ def pictures(
     named_by_kind = kind == "all" or (output is None and bool(chosen.at))
     output = Path(default_name(path)) if output is None else output
     kind = check_suffix(output, kind)
-    inputs = [path, *(one for one in chosen.beside if isinstance(one, Path))]
+    inputs = [path, *(read for read in chosen.beside if isinstance(read, Path))]
 
     def place(name: str) -> Path:
         return output.with_stem(f"{output.stem}-{name}") if named_by_kind and name else output
@@ -174,7 +174,7 @@ def _figures(
         panels = (charts.chart if holds == CHART else branch_diagram.branches)(data, options)
         yield "", options.draw(panels, ax)[0].figure
         return
-    with Result(data, options) as result, matplotlib.rc_context(options.style):
+    with DrawnSweep(data, options) as result, matplotlib.rc_context(options.style):
         chosen = _chosen(result, kind)
         check(chosen)
         for name in chosen:
@@ -191,7 +191,7 @@ def check_suffix(output: Path, kind: str | None) -> str | None:
     if suffix in film.SUFFIXES and kind in (None, "film"):
         return "film"
     if suffix not in SUFFIXES:
-        allowed = (*SUFFIXES, *(f"{one} for a film" for one in film.SUFFIXES))
+        allowed = (*SUFFIXES, *(f"{ending} for a film" for ending in film.SUFFIXES))
         raise PlotError(f"output {output}: the suffix is the format and must be one of {', '.join(allowed)}")
     return kind
 
@@ -205,7 +205,7 @@ def _check_ragged(path, holds: str, kind: str | None, options: PlotOptions) -> N
             raise PlotError(f"{name}: does not belong to {holds}, which {name_of(path)} holds")
 
 
-def _kinds(result: Result) -> list[str]:
+def _kinds(result: DrawnSweep) -> list[str]:
     """The kinds that the data can show, first the picture that the scene names."""
     if not result.done.any():
         return []
@@ -213,7 +213,7 @@ def _kinds(result: Result) -> list[str]:
     return sorted(able, key=lambda name: name != result.settings.get("picture"))
 
 
-def _chosen(result: Result, kind: str | None) -> list[str]:
+def _chosen(result: DrawnSweep, kind: str | None) -> list[str]:
     """The kinds to draw. Without a word for one: the first that can show what the options ask for."""
     available = _kinds(result)
     if not result.done.any():

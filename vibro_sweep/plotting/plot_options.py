@@ -102,7 +102,7 @@ class PlotOptions:
                     figure.align_ylabels(grid[:, 0])
                 else:
                     panels.draw(figure)
-                axes = [one for one in figure.axes if one.get_label() != "<colorbar>"]
+                axes = [ax for ax in figure.axes if ax.get_label() != "<colorbar>"]
             for panel in axes:
                 if self.xlim:
                     panel.set_xlim(self.xlim)
@@ -134,19 +134,19 @@ class PlotOptions:
         return figure
 
 
-def is_result(given: object) -> bool:
+def is_result(value: object) -> bool:
     """Whether this is a result of this program: an orbit, a branch, a curve, windows."""
-    return type(given).__module__.startswith("vibro_sweep.analysis")
+    return type(value).__module__.startswith("vibro_sweep.analysis")
 
 
-def data_of(name: str, given: object) -> "Path | xarray.Dataset":
+def data_of(name: str, value: object) -> "Path | xarray.Dataset":
     """The path or the Dataset that an argument is. Raises ArgumentError for anything else."""
-    if isinstance(given, (str, Path)):
-        return checked_path(name, given)
+    if isinstance(value, (str, Path)):
+        return checked_path(name, value)
     from xarray import Dataset  # it is imported already where it is one
 
     try:
-        data: Any = given.to_xarray() if is_result(given) and hasattr(given, "to_xarray") else given
+        data: Any = value.to_xarray() if is_result(value) and hasattr(value, "to_xarray") else value
     except ArgumentError as error:
         raise PlotError(f"{name}: {error}") from None
     check_type(name, data, Dataset, A_FILE)
@@ -165,18 +165,18 @@ def _place(at: Mapping[str, float] | None) -> dict[str, float]:
     return result
 
 
-def _pair(name: str, given: object) -> tuple[float, float] | None:
-    values = None if given is None else array_of(given, 1)
-    if given is not None and (values is None or values.shape != (2,)):
-        raise PlotError(not_allowed(name, given, "two numbers"))
+def _pair(name: str, value: object) -> tuple[float, float] | None:
+    values = None if value is None else array_of(value, 1)
+    if value is not None and (values is None or values.shape != (2,)):
+        raise PlotError(not_allowed(name, value, "two numbers"))
     return None if values is None else (float(values[0]), float(values[1]))
 
 
-def _width(given: object) -> float:
-    width = number_of(given)
+def _width(value: object) -> float:
+    width = number_of(value)
     if width is None or not WIDTHS[0] <= width <= WIDTHS[1]:
         allowed = f"a number of mm from {WIDTHS[0]:g} to {WIDTHS[1]:g}, as 85 of one column"
-        raise PlotError(not_allowed("width", given, allowed))
+        raise PlotError(not_allowed("width", value, allowed))
     return width
 
 

@@ -25,19 +25,19 @@ class RaggedFile:
     sweep whose windows they are. Raises PlotError for anything else.
     """
 
-    def __init__(self, given: "str | Path | xarray.Dataset", kind: str):
-        given, found = readable(given)
-        self.name = name_of(given)
-        if found != kind and not (kind == BRANCHES and found == WINDOWS):  # which are stable parts of branches
+    def __init__(self, source: "str | Path | xarray.Dataset", kind: str):
+        source, holds = readable(source)
+        self.name = name_of(source)
+        if holds != kind and not (kind == BRANCHES and holds == WINDOWS):  # which are stable parts of branches
             raise PlotError(f"{self.name}: holds no {kind}")
         try:
-            data = open_whole(Path(given)) if isinstance(given, (str, Path)) else given
+            data = open_whole(Path(source)) if isinstance(source, (str, Path)) else source
             check(data)
-            self.arrays = {str(name): one.values for name, one in data.variables.items()}
+            self.arrays = {str(name): variable.values for name, variable in data.variables.items()}
         except StoreError as error:
             raise PlotError(str(error)) from error
         except (OSError, RuntimeError, ValueError) as error:
-            raise PlotError(f"{self.name} does not hold all that {found} are: {error}") from error
+            raise PlotError(f"{self.name} does not hold all that {holds} are: {error}") from error
         self._units = {name: data[name].attrs.get("units") for name in self.arrays}
         self.parameters = [str(name) for name in np.atleast_1d(data.attrs.get("parameters", []))]
         self.title = str(data.attrs.get("title", "")).removeprefix("vibro_sweep: ")
@@ -60,7 +60,7 @@ class RaggedFile:
 def sweep_below(path: str | Path) -> "str | Path | xarray.Dataset":
     """The sweep over which branches or curves are drawn. Raises PlotError where it holds branches, curves or
     windows."""
-    given, kind = readable(path)
+    sweep, kind = readable(path)
     if kind is not None:
         raise PlotError(f"over: {path} holds {cut(kind)}, and no sweep")
-    return given
+    return sweep

@@ -10,23 +10,23 @@ MARGIN = 1.0  # points around a text
 DIGIT = 0.75  # the height of a digit over the size of its type
 
 
-def name_regions(ax, x, y, values, taken=()) -> None:
+def name_regions(ax, x, y, values, boxes=()) -> None:
     """Write each period into the widest place of its regions, if the text has room there.
 
     x, y : corners of the cells, (columns + 1,) and (rows + 1,), or both (rows + 1, columns + 1)
     values : whole numbers (rows, columns), masked where there is none
-    taken : boxes (2, 2) in pixels in which other texts stand
+    boxes : (2, 2) in pixels, in which other texts stand
     The axes have got their places and limits before (`labels.arrange`).
     """
     from scipy import ndimage  # slow to import
 
     low, high = ax.transAxes.transform([(0, 0), (1, 1)])
     step = max(STEP * ax.figure.dpi / 72, (high - low).max() / MOST)  # in pixels
-    across, up = (np.arange(one + step / 2, other, step) for one, other in zip(low, high, strict=True))
+    across, up = (np.arange(begin + step / 2, end, step) for begin, end in zip(low, high, strict=True))
     X, Y = (_numbers(ax, places, axis) for axis, places in enumerate((across, up)))
     shown = _at(X, Y, x, y, values.filled(-1).astype(int))
-    for one, other in taken:
-        shown[np.ix_((one[1] <= up) & (up <= other[1]), (one[0] <= across) & (across <= other[0]))] = -1
+    for (left, bottom), (right, top) in boxes:
+        shown[np.ix_((bottom <= up) & (up <= top), (left <= across) & (across <= right))] = -1
     for period in np.unique(shown[shown > 0]):
         text = ax.text(X[0], Y[0], f"{period}", fontsize=type_size(7), **_STYLE)
         size = text.get_window_extent().width * 72 / ax.figure.dpi, DIGIT * text.get_fontsize()
@@ -71,8 +71,8 @@ def _at(X, Y, x, y, values) -> np.ndarray:
 
 def _cell(places, borders) -> np.ndarray:
     """The index of the cell between rising borders (k + 1,) in which each place lies; -1: in none."""
-    found = np.searchsorted(borders, places, side="right") - 1
-    return np.where((found >= 0) & (found < len(borders) - 1), found, -1)
+    index = np.searchsorted(borders, places, side="right") - 1
+    return np.where((index >= 0) & (index < len(borders) - 1), index, -1)
 
 
 def _table(columns, rows, values) -> np.ndarray:

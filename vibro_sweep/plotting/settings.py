@@ -33,7 +33,7 @@ def settings_of(source: Sweep) -> Settings:
         if name in source and name not in source.keys
     }
     significant = source.attribute("lyapunov_error", "significant") if "lyapunov_error" in source else None
-    held = {str(name): one.item() for name, one in source.data.coords.items() if one.ndim == 0}
+    held = {str(name): coordinate.item() for name, coordinate in source.data.coords.items() if coordinate.ndim == 0}
     return Settings(source.attrs | held, along, np.nan if significant is None else float(significant), _valid(source))
 
 

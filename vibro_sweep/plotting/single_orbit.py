@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from vibro_sweep.plotting import drawn_motion, rests
+from vibro_sweep.plotting import drawn_motion, sticking_marks
 from vibro_sweep.plotting.figure import Panels
 from vibro_sweep.plotting.style import DASHES, FAINT, INK, LEFT, RIGHT, with_unit
 from vibro_sweep.results.motion import Motion
@@ -24,7 +24,7 @@ def portrait_and_history(motion: Motion, title: str, system, names=("gap", "gap 
         portrait.set(xlabel=x_label, ylabel=v_label)
         joined = motion.joined()
         history.plot(joined.t, joined[gap], color=INK, lw=0.7)
-        rests.along(history, joined, "t", gap)
+        sticking_marks.along(history, joined, "t", gap)
         drawn_motion.contacts(history, joined, "t", gap)
         times, sides = motion.impacts[:, :2].T
         for side, marker, colour, text in ((1, ">", RIGHT, "right"), (-1, "<", LEFT, "left")):

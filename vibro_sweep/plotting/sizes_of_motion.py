@@ -2,12 +2,12 @@
 
 import numpy as np
 
+from vibro_sweep.plotting.drawn_sweep import DrawnSweep
 from vibro_sweep.plotting.figure import Panels
 from vibro_sweep.plotting.kind import picture
 from vibro_sweep.plotting.labels import ABOVE
 from vibro_sweep.plotting.spectrum_panel import curve
 from vibro_sweep.plotting.style import ARROWS, BRANCHES, FAINT, INK, LEFT, RIGHT, symbol
-from vibro_sweep.plotting.sweep_result import Result
 from vibro_sweep.plotting.sweeps import set_reach
 from vibro_sweep.tables.coordinates import MOST_MASSES
 
@@ -15,31 +15,31 @@ COLOURS = (INK, RIGHT, LEFT, FAINT)
 OF_CONTACTS = {"penetration_max": "largest penetration", "contact_force_max": "largest force"}
 
 
-def shows_contacts(result: Result) -> bool:
+def shows_contacts(result: DrawnSweep) -> bool:
     """A sweep over one key; contacts."""
     return len(result.sweep) == 1 and all(name in result for name in OF_CONTACTS)
 
 
-def shows_energy(result: Result) -> bool:
+def shows_energy(result: DrawnSweep) -> bool:
     """A sweep over one key; energy."""
     return len(result.sweep) == 1 and "impact_power" in result
 
 
-def variables(result: Result) -> tuple[str, ...]:
+def variables(result: DrawnSweep) -> tuple[str, ...]:
     """The sizes of motion that may be drawn, the default first."""
     names = (f"{size}_{letter}{n}" for size in ("rms", "peak") for letter in "xv" for n in range(1, MOST_MASSES + 1))
     return tuple(name for name in names if name in result)
 
 
 @picture(shows_contacts)
-def contacts(result: Result) -> Panels:
+def contacts(result: DrawnSweep) -> Panels:
     """The largest penetration of a compliant stop, and its largest force, over the parameter."""
     rows = [(label + result.unit(name), {name: {}}) for name, label in OF_CONTACTS.items()]
     return _lines(result, "Contacts", 4.2, rows)
 
 
 @picture(shows_energy, variables)
-def energy(result: Result) -> Panels:
+def energy(result: DrawnSweep) -> Panels:
     """Power lost in impacts over the parameter; below, the root mean square of each displacement, or one variable."""
     struck = bool(np.any(result.array("impact_power") > 0)) or result.failed
     chosen = result.options.variable
@@ -55,7 +55,7 @@ def energy(result: Result) -> Panels:
     return _lines(result, "Energy" if struck else f"Energy; no {result.meeting}s", 4.6 if struck else 3.0, rows)
 
 
-def _lines(result, what, height, rows) -> Panels:
+def _lines(result, subject, height, rows) -> Panels:
     """Panels of quantities that are not below zero. rows : of each its label, and names with the styles of their lines;
     one without a style shows upward and downward sweeps."""
     ((key, values),) = result.sweep.items()
@@ -79,4 +79,4 @@ def _lines(result, what, height, rows) -> Panels:
         axes[-1, 0].set_xlabel(result.axis(key))
         set_reach(axes[-1, 0], values[order])
 
-    return Panels(result.title(what), height, draw, len(rows), grid={"sharex": True})
+    return Panels(result.title(subject), height, draw, len(rows), grid={"sharex": True})

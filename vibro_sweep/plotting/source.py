@@ -33,39 +33,39 @@ class PlotError(VibroSweepError, ValueError):
     """
 
 
-def readable(given: "str | Path | xarray.Dataset") -> tuple["str | Path | xarray.Dataset", str | None]:
+def readable(source: "str | Path | xarray.Dataset") -> tuple["str | Path | xarray.Dataset", str | None]:
     """What is read, and what it holds where that is branches, curves or windows. Raises PlotError."""
-    if isinstance(given, (str, Path)):
+    if isinstance(source, (str, Path)):
         try:
-            with open_file(Path(given)) as data:
+            with open_file(Path(source)) as data:
                 kind = data.attrs["kind"]
         except StoreError as error:
             raise PlotError(str(error)) from error
     else:
-        kind = getattr(given, "attrs", {}).get("kind")
-    return given, None if kind in (None, SWEEP) else str(kind)
+        kind = getattr(source, "attrs", {}).get("kind")
+    return source, None if kind in (None, SWEEP) else str(kind)
 
 
-def name_of(given: "str | Path | xarray.Dataset") -> str:
+def name_of(data: "str | Path | xarray.Dataset") -> str:
     """The name of the data in messages."""
-    if isinstance(given, (str, Path)):
-        return str(given)
-    return getattr(given, "encoding", {}).get("source", "this dataset")
+    if isinstance(data, (str, Path)):
+        return str(data)
+    return getattr(data, "encoding", {}).get("source", "this dataset")
 
 
 @contextmanager
-def sweep_read(given: "str | Path | xarray.Dataset") -> Iterator[Sweep]:
+def sweep_read(data: "str | Path | xarray.Dataset") -> Iterator[Sweep]:
     """The sweep of a file or of a Dataset. Raises PlotError where it is missing or no result."""
-    if not isinstance(given, (str, Path)):
-        if not hasattr(given, "data_vars"):
-            raise ArgumentTypeError(not_allowed("data", given, "the path of a file, or a Dataset"))
-        if "status" not in given or "sweep_dimensions" not in given.attrs:
+    if not isinstance(data, (str, Path)):
+        if not hasattr(data, "data_vars"):
+            raise ArgumentTypeError(not_allowed("data", data, "the path of a file, or a Dataset"))
+        if "status" not in data or "sweep_dimensions" not in data.attrs:
             raise PlotError("this dataset is not from `vibro_sweep.open` or `vibro_sweep.sweep`: it has no status")
     with ExitStack() as stack:
         try:
-            found = stack.enter_context(sweep_in(given, computes=False))
+            sweep = stack.enter_context(sweep_in(data, computes=False))
         except StoreError as error:
             raise PlotError(str(error)) from error
-        if "status" not in found:
-            raise PlotError(f"{found.name} is not from `vibro_sweep.open` or `vibro_sweep.sweep`: it has no status")
-        yield found
+        if "status" not in sweep:
+            raise PlotError(f"{sweep.name} is not from `vibro_sweep.open` or `vibro_sweep.sweep`: it has no status")
+        yield sweep

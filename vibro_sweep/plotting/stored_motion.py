@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from vibro_sweep.plotting.sweep_result import Point, Result
+from vibro_sweep.plotting.drawn_sweep import DrawnSweep, Point
 from vibro_sweep.results.motion import Motion, with_jumps
 from vibro_sweep.tables.coordinates import state
 from vibro_sweep.tables.observables import jumping
@@ -10,20 +10,21 @@ from vibro_sweep.tables.observables import jumping
 GAP = {"gap": "x", "gap_velocity": "v"}  # what is formed of the positions, and of the velocities
 
 
-def stored_motion(result: Result, point: Point) -> Motion:
+def stored_motion(result: DrawnSweep, point: Point) -> Motion:
     """The trajectory of an orbit; t in forcing periods."""
     t, along = result.coordinate("t_over_T"), result.contact_normal
     names = state(result.masses)
     states = {name: _stored(result, f"trajectory_{name}", point, len(t)) for name in names}
     velocity = jumping(along is not None)
     when, side, speed, after = (
-        result.one(f"trajectory_impact_{name}", point) for name in ("t_over_T", "side", velocity, f"{velocity}_after")
+        result.at_point(f"trajectory_impact_{name}", point)
+        for name in ("t_over_T", "side", velocity, f"{velocity}_after")
     )
     hits = np.isfinite(when)
     at_impact = {name: _stored(result, f"trajectory_impact_{name}", point, len(when))[hits] for name in names}
     when, side, speed, after = (values[hits] for values in (when, side, speed, after))
     stops = result.stops(point.place)
-    stop = np.array([stops.get(one, np.nan) for one in side.tolist()])
+    stop = np.array([stops.get(sign, np.nan) for sign in side.tolist()])
     jump = np.full(len(when), np.nan)
     rows = {name: (values, jump, values) for name, values in at_impact.items()} | {"t": (when, when, when)}
     if along is None:
@@ -34,7 +35,7 @@ def stored_motion(result: Result, point: Point) -> Motion:
         rows |= {"gap": (stop, jump, stop), "gap_velocity": (speed, jump, after)}
     states = with_jumps(t, states, rows)
     impacts = np.stack([when, side, speed, after], axis=1)
-    laws = {one: law for one in stops if (law := result.compliance(one, point.place)) is not None}
+    laws = {stop_side: law for stop_side in stops if (law := result.compliance(stop_side, point.place)) is not None}
     unit, by_force = 2 * np.pi / result.number("omega", point.place), result.settings.get("release") == "force"
     return Motion(states.pop("t"), unit, states, impacts, stops, laws, by_force)
 
@@ -44,5 +45,5 @@ def gap_of(motion: dict[str, np.ndarray], along: np.ndarray, letter: str) -> np.
     return sum(n * motion[f"{letter}{i}"] for i, n in enumerate(along, 1))
 
 
-def _stored(result: Result, name: str, point: Point, count: int) -> np.ndarray:
-    return result.one(name, point) if name in result else np.full(count, np.nan)
+def _stored(result: DrawnSweep, name: str, point: Point, count: int) -> np.ndarray:
+    return result.at_point(name, point) if name in result else np.full(count, np.nan)

@@ -62,7 +62,7 @@ PERIODS = (
 )
 
 # Special points: label, name, marker, colour; filled or not. Those of a graze, which are two, come first.
-SPECIAL = {one.name: (one.label, one.words, one.mark, one.colour, True) for one in TYPES if one.label}
+SPECIAL = {row.name: (row.label, row.words, row.mark, row.colour, True) for row in TYPES if row.label}
 _LABEL, _WORDS, *_GRAZE, _ = SPECIAL.pop("graze")
 SPECIAL = {
     "graze": (_LABEL, f"{_WORDS}, persistence", *_GRAZE, True),

@@ -4,12 +4,13 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from vibro_sweep.plotting import density, rests, strip
-from vibro_sweep.plotting.decades import in_proportion
+from vibro_sweep.plotting import density, sticking_marks, window_strip
+from vibro_sweep.plotting.drawn_sweep import DrawnSweep, PlotError
 from vibro_sweep.plotting.figure import Panels
 from vibro_sweep.plotting.impact_panel import NONE, impact_counts, there_are
 from vibro_sweep.plotting.kind import picture
 from vibro_sweep.plotting.labels import ABOVE, legend_below
+from vibro_sweep.plotting.scales import in_proportion
 from vibro_sweep.plotting.spectrum_panel import spectrum
 from vibro_sweep.plotting.style import (
     ARROWS,
@@ -27,7 +28,6 @@ from vibro_sweep.plotting.style import (
     stop_name,
     symbol,
 )
-from vibro_sweep.plotting.sweep_result import PlotError, Result
 from vibro_sweep.tables.coordinates import MOST_MASSES, state
 
 MANY = 100_000  # from here on single points make a blot, and are counted instead,
@@ -39,22 +39,22 @@ GRAZES = {  # the stop, and how it is drawn
 }
 
 
-def shows_bifurcation(result: Result) -> bool:
+def shows_bifurcation(result: DrawnSweep) -> bool:
     """A sweep over one key; section."""
     return len(result.sweep) == 1 and ("x1" in result or "v1" in result)
 
 
-def shows_lyapunov(result: Result) -> bool:
+def shows_lyapunov(result: DrawnSweep) -> bool:
     """A sweep over one key; lyapunov."""
     return len(result.sweep) == 1 and "lyapunov" in result
 
 
-def shows_impacts(result: Result) -> bool:
+def shows_impacts(result: DrawnSweep) -> bool:
     """A sweep over one key; impacts."""
     return len(result.sweep) == 1 and "impacts_right" in result and "impacts_left" in result
 
 
-def section_variables(result: Result) -> tuple[str, ...]:
+def section_variables(result: DrawnSweep) -> tuple[str, ...]:
     """Coordinates of the section points in the file, the one that is drawn by default first."""
     names = state(MOST_MASSES)
     if "phase" in result:
@@ -65,11 +65,11 @@ def section_variables(result: Result) -> tuple[str, ...]:
 
 
 @picture(shows_bifurcation, section_variables)
-def bifurcation(result: Result) -> Panels:
+def bifurcation(result: DrawnSweep) -> Panels:
     """Section points over the parameter; below, on the same axis, windows, spectrum and impacts where there are any."""
     panels = [(3.6, section)]
     if result.options.windows:
-        panels.append((strip.HEIGHT, strip.windows))
+        panels.append((window_strip.HEIGHT, window_strip.windows))
     if shows_lyapunov(result):
         panels.append((1.7, spectrum))
     note = ""
@@ -82,18 +82,18 @@ def bifurcation(result: Result) -> Panels:
 
 
 @picture(shows_lyapunov)
-def lyapunov(result: Result) -> Panels:
+def lyapunov(result: DrawnSweep) -> Panels:
     """The Lyapunov spectrum over the parameter."""
     return _stack(result, [(3.6, spectrum)], "Lyapunov exponents")
 
 
 @picture(shows_impacts)
-def impacts(result: Result) -> Panels:
+def impacts(result: DrawnSweep) -> Panels:
     """Impacts at each stop over the parameter."""
     return _stack(result, [(2.8, impact_counts)], "Impacts")
 
 
-def _stack(result, panels, what) -> Panels:
+def _stack(result, panels, subject) -> Panels:
     """Panels over the swept number, each of a height and what draws it: draw(ax, result, values, order)."""
     heights = [height for height, _ in panels]
     starts = len(result.starts)
@@ -114,7 +114,7 @@ def _stack(result, panels, what) -> Panels:
         _explanations(axes, result)
 
     grid = {"sharex": True, "height_ratios": heights}
-    return Panels(result.title(what + note), sum(heights) + 1.2, draw_all, len(panels), grid=grid, alone=True)
+    return Panels(result.title(subject + note), sum(heights) + 1.2, draw_all, len(panels), grid=grid, alone=True)
 
 
 def set_reach(ax, values) -> None:
@@ -175,17 +175,17 @@ def _key(ax, result):
 
 def _explanations(axes, result):
     """Draw the key of tints, bands and lines below the panels."""
-    found = {artist.get_gid() for ax in axes for artist in (*ax.collections, *ax.lines)}
+    group_ids = {artist.get_gid() for ax in axes for artist in (*ax.collections, *ax.lines)}
     errors = f"{result.significant:.2g} standard errors"
     certain = f" by more than {errors}" if "lyapunov_error" in result else ""
     handles = {
         "chaos": Patch(color=CHAOS, label=f"{exponent(1)} > 0{certain}: chaos"),
         "error": Patch(color=FAINT, alpha=0.4, label=f"exponent ± {errors}"),
-        "lost": Patch(color=FAINT, label=rf"strips: $\lambda_i = -\infty$, lost at {rests.NOUN}"),
-        "rest": rests.handle(),
+        "lost": Patch(color=FAINT, label=rf"strips: $\lambda_i = -\infty$, lost at {sticking_marks.NOUN}"),
+        "rest": sticking_marks.handle(),
         "periodic": Line2D([], [], color=INK, lw=0.8, label="line: periodic orbit"),
     }
-    shown = [handle for name, handle in handles.items() if name in found]
+    shown = [handle for name, handle in handles.items() if name in group_ids]
     if shown:
         legend_below(axes, shown, len(shown))
 
@@ -201,23 +201,23 @@ def section(ax, result, values, order):
         ax.set_ylabel(at_section(name) + result.unit(name))
     if result.failed:
         return
-    there = np.isfinite(points)
-    low, high = limits(points) if there.any() else (0, 1)
+    inside = np.isfinite(points)
+    low, high = limits(points) if inside.any() else (0, 1)
     bottom, top = result.options.ylim or (low, high)
     ax.set_ylim(bottom, top)
-    there &= (bottom <= points) & (points <= top)
-    if not there.any():
+    inside &= (bottom <= points) & (points <= top)
+    if not inside.any():
         ax.text(0.5, 0.5, "no section points", transform=ax.transAxes, ha="center", color=FAINT)
         return
     repeats = result.repeats(points, order)
-    count = _distinct(points, there, repeats)
+    count = _distinct(points, inside, repeats)
     most = MANY * min(1, len(values) / WIDE) / (4 if result.follow else 1)  # of wide dots fewer
-    if there.sum() >= most and not in_proportion(values):  # the columns of a grid are even
+    if inside.sum() >= most and not in_proportion(values):  # the columns of a grid are even
         cloud = density.Cloud(values, points, repeats, high - low)
         if result.follow:
             density.two(ax, cloud, list(BRANCHES.values()))
         else:
-            density.one(ax, cloud)
+            density.of_all(ax, cloud)
     elif result.follow:
         # Where the branches agree the wide dot shows as a rim around the narrow one.
         for i, (start, scale) in enumerate({"up": 2.0, "down": 0.9}.items()):
@@ -228,19 +228,19 @@ def section(ax, result, values, order):
         _stop_lines(ax, result, values, order)
 
 
-def _distinct(points, there, repeats) -> float:
+def _distinct(points, inside, repeats) -> float:
     """The number of points that one can distinguish of those that are there, bool (values, starts, samples): of a
     periodic orbit those of one period."""
     known = np.maximum(np.isfinite(points).sum(axis=-1), 1)
-    return float((there.sum(axis=-1) * np.where(repeats > 0, repeats / known, 1)).sum())
+    return float((inside.sum(axis=-1) * np.where(repeats > 0, repeats / known, 1)).sum())
 
 
 def _dots(ax, values, points, count, scale=1.0, **style):
-    there = np.isfinite(points)
+    inside = np.isfinite(points)
     x = np.broadcast_to(np.expand_dims(values, tuple(range(1, points.ndim))), points.shape)
     widest = np.clip(COLUMN / len(values), 1.5, 4)
     size = scale * np.clip(3.5 * (count / 1000) ** -0.25, 1.2, widest)
-    ax.plot(x[there], points[there], ".", markersize=size, markeredgewidth=0, rasterized=True, **style)
+    ax.plot(x[inside], points[inside], ".", markersize=size, markeredgewidth=0, rasterized=True, **style)
 
 
 def _stop_lines(ax, result, values, order):

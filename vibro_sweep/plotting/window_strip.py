@@ -5,10 +5,10 @@ from matplotlib.collections import PolyCollection
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from vibro_sweep.plotting.decades import along_axis
+from vibro_sweep.plotting.drawn_sweep import DrawnSweep, PlotError
 from vibro_sweep.plotting.ragged import RaggedFile
+from vibro_sweep.plotting.scales import along_axis
 from vibro_sweep.plotting.style import FAINT, SPECIAL, edges, special_mark, type_size
-from vibro_sweep.plotting.sweep_result import PlotError, Result
 from vibro_sweep.tables.file_columns import WINDOWS
 from vibro_sweep.tables.outcomes import REASONS, names
 
@@ -32,7 +32,7 @@ REASON_COLOURS = {
 }
 
 
-def windows(ax, result: Result, values, order):
+def windows(ax, result: DrawnSweep, values, order):
     """The strip of the windows file that the options name."""
     file = _windows_of(result)
     left, right = values[0], values[-1]
@@ -59,14 +59,14 @@ def windows(ax, result: Result, values, order):
     _legend(ax, file, shown, unvisited, (left, right), reasons)
 
 
-def _windows_of(result: Result) -> RaggedFile:
+def _windows_of(result: DrawnSweep) -> RaggedFile:
     file = RaggedFile(result.options.windows, WINDOWS)
     if file.sweep != str(result.settings.get("identity", "")) or sorted(file.parameters) != sorted(result.sweep):
         raise PlotError(f"windows: {file.name} has the windows of another sweep than {result.path}")
     return file
 
 
-def ends_over(ax, result: Result) -> None:
+def ends_over(ax, result: DrawnSweep) -> None:
     """Draw what ends the windows of a plane, row by row, on the picture of the plane."""
     file = _windows_of(result)
     types, frame = np.array(file.types()), (ax.get_xlim(), ax.get_ylim())
@@ -105,14 +105,14 @@ def _unvisited(ax, file, shown, lanes, limits) -> bool:
 
 
 def _ends(ax, file, shown, lanes, limits):
-    types, found = file.types(), {}
+    types, places_of = file.types(), {}
     size = 2.6 * min(1.0, (MANY / max(len(shown), 1)) ** 0.5)
     for w, lane in zip(shown, lanes, strict=True):
         for end, at in (("window_lower", "window_lo"), ("window_upper", "window_hi")):
             kind, value = types[file[end][w]], file[at][w]
             if kind in SPECIAL and limits[0] <= value <= limits[1]:
-                found.setdefault(kind, []).append((value, lane))
-    for kind, places in found.items():
+                places_of.setdefault(kind, []).append((value, lane))
+    for kind, places in places_of.items():
         x, y = np.transpose(places)
         ax.plot(x, y, **special_mark(kind, size))
 
@@ -130,28 +130,28 @@ def _reasons(ax, result, file, values, order) -> list[str]:
     to, back = along_axis(values)
     borders, named = back(edges(to(values))), []
     for code, name in enumerate(names(REASONS)):
-        there = np.flatnonzero((reasons == code).any(axis=1))
-        if code and len(there):
+        chosen = np.flatnonzero((reasons == code).any(axis=1))
+        if code and len(chosen):
             named.append(name)
-            spans = [(borders[i], borders[i + 1] - borders[i]) for i in there]
+            spans = [(borders[i], borders[i + 1] - borders[i]) for i in chosen]
             ax.broken_barh(spans, (-1.4, 0.6), facecolor=REASON_COLOURS[name], linewidth=0)
     return named
 
 
 def _legend(ax, file, shown, unvisited, limits, reasons):
     types = file.types()
-    there = {
+    chosen = {
         types[file[f"window_{end}"][w]]
         for w in shown
         for end, at in (("lower", "window_lo"), ("upper", "window_hi"))
         if limits[0] <= file[at][w] <= limits[1]
     }
     handles = [
-        Line2D([], [], label=f"{SPECIAL[k][0]} {SPECIAL[k][1]}", **special_mark(k)) for k in SPECIAL if k in there
+        Line2D([], [], label=f"{SPECIAL[k][0]} {SPECIAL[k][1]}", **special_mark(k)) for k in SPECIAL if k in chosen
     ]
     symmetric = file["window_symmetric"][shown].astype(bool)
     colours = {"window, with its period": (BAR, ~symmetric), "symmetric orbit": (SYMMETRIC, symmetric)}
-    handles += [Patch(facecolor=colour, label=name) for name, (colour, who) in colours.items() if who.any()]
+    handles += [Patch(facecolor=colour, label=name) for name, (colour, of_colour) in colours.items() if of_colour.any()]
     if unvisited:
         handles.append(Patch(facecolor=BAR, edgecolor=HATCHES, linewidth=0, hatch=HATCH, label="missed by all starts"))
     names = {name: name.replace("quasi_", "quasi-").replace("_", " ") for name in reasons}

@@ -9,7 +9,7 @@ from vibro_sweep.oscillator.contact_laws import OTHER_STOPS
 SPAN = 10.0  # the largest of the numbers over their lower quartile, from which on they span decades
 FEW = 1.5  # decades of an axis on which 2 and 5 are named as well
 DECADES, EVEN = 2.0, 5.0  # values in proportion: so many at least, and of swept ones the largest step over the smallest
-OF_STOPS = frozenset(one.name for one in OTHER_STOPS)
+OF_STOPS = frozenset(number.name for number in OTHER_STOPS)
 ZERO = 0.5  # the part of the axis from 0 to the least number above it, in decades
 
 

@@ -31,7 +31,7 @@ class Point(NamedTuple):
     label: str
 
 
-class Result:
+class DrawnSweep:
     """A result file, open for reading, or a Dataset; a context manager.
 
     `sweep`: key -> its values, in order; `starts`: names of the starts (one empty name if there is only one);
@@ -41,9 +41,9 @@ class Result:
     Raises `PlotError` where the file is missing or not a result.
     """
 
-    def __init__(self, given, options: PlotOptions):
+    def __init__(self, data, options: PlotOptions):
         self.options = options
-        self._open = sweep_read(given)
+        self._open = sweep_read(data)
         self._source = self._open.__enter__()
         self.path = self._source.name
         try:
@@ -100,8 +100,8 @@ class Result:
     def unit(self, name) -> str:
         """The unit of a quantity, for the name of an axis; of the gap along a trajectory that of the states."""
         letter = {"gap": "x1", "gap_velocity": "v1"}.get(name, name)
-        there = next((one for one in (name, letter, f"trajectory_{letter}") if one in self._source), None)
-        return "" if there is None else shown_unit(self._source.attribute(there, "units"))
+        stored_name = next((key for key in (name, letter, f"trajectory_{letter}") if key in self._source), None)
+        return "" if stored_name is None else shown_unit(self._source.attribute(stored_name, "units"))
 
     def axis(self, key) -> str:
         """A swept number as an axis label."""
@@ -131,7 +131,7 @@ class Result:
             values[stored == -1] = np.nan
         return values
 
-    def one(self, name, point: Point) -> np.ndarray:
+    def at_point(self, name, point: Point) -> np.ndarray:
         """A quantity at one point, shape (its own dimensions); reads no other point."""
         return self._read(name, point.index[:-1] if self._one_start else point.index)
 
@@ -208,14 +208,14 @@ class Result:
     def grazing(self, key) -> dict[str, np.ndarray]:
         """Clearances at which the free motion touches the stops, at each value of a swept key, if they depend on no
         other: name -> (n,). b* where it is that of both."""
-        found = {}
+        clearances = {}
         for name in ("b_star", *(f"b_{'right' if side > 0 else 'left'}" for side in self.sides)):
             if name in self._along:
                 keys, values = self._along[name]
-                found |= {name: values} if keys == (key,) else {}
+                clearances |= {name: values} if keys == (key,) else {}
             elif (value := self.number(name)) is not None:
-                found[name] = np.full(len(self.sweep[key]), value)
-        return found
+                clearances[name] = np.full(len(self.sweep[key]), value)
+        return clearances
 
     def interval(self, error) -> np.ndarray:
         """The distance from zero at which an exponent with this standard error differs from zero."""
@@ -260,7 +260,7 @@ class Result:
         name = self.starts[start]
         return ", ".join([*values, *([name if self.follow else f"start {name}"] if name else [])])
 
-    def title(self, what="") -> str:
+    def title(self, subject="") -> str:
         """The title: what is shown, the numbers that are the same at every point, and how much is there if not all."""
         numbers = self._numbers()
         if (stops := self.settings.get("stops")) in ("right", "left"):
@@ -270,23 +270,23 @@ class Result:
         missing = "" if self.done.all() else f"{self.done.sum()} of {self.done.size} points computed"
         kind = str(self.settings.get("type", "")).replace("_", " ")
         return "\n".join(
-            [*filter(None, ["; ".join(filter(None, [what, kind, self.model(), missing]))]), *_lines(numbers)]
+            [*filter(None, ["; ".join(filter(None, [subject, kind, self.model(), missing]))]), *_lines(numbers)]
         )
 
     def _numbers(self) -> list[str]:
         """The numbers of the system as equations; without what has its default, and lists as one."""
-        found, lists = [], {}
+        equations, lists = [], {}
         incomplete = {_list_of(key) for key in self.sweep}
-        for key, one in OF_A_SYSTEM.items():
-            if key in self.settings and one.each and _list_of(key) not in incomplete:
+        for key, quantity in OF_A_SYSTEM.items():
+            if key in self.settings and quantity.each and _list_of(key) not in incomplete:
                 lists.setdefault(_list_of(key), []).append(self.settings[key])
-            elif key in self.settings and (one.default is None or self.settings[key] != one.default):
-                found.append(equation(key, self.settings[key]))
+            elif key in self.settings and (quantity.default is None or self.settings[key] != quantity.default):
+                equations.append(equation(key, self.settings[key]))
         for name, values in lists.items():
             if any(value != OF_A_SYSTEM[f"{name}1"].default for value in values):
                 letter = OF_A_SYSTEM[f"{name}1"].symbol.removesuffix("_{1}").removesuffix("{}")
-                found.append(f"${letter} = {', '.join(in_formula(value, 4) for value in values)}$")
-        return found
+                equations.append(f"${letter} = {', '.join(in_formula(value, 4) for value in values)}$")
+        return equations
 
 
 def _list_of(key: str) -> str:
