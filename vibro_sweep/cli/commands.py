@@ -217,9 +217,9 @@ def info(file: DataFile):
     from .info import examine
 
     with input_errors(StoreError):
-        found = examine(file)
-    say(found.text)
-    if found.damaged:
+        description = examine(file)
+    say(description.text)
+    if description.damaged:
         raise typer.Exit(BAD_INPUT)
 
 

@@ -53,8 +53,8 @@ def examine(path: str | Path) -> Description:
 
 def _examined(data: xarray.Dataset, path: Path) -> Description:
     lines = [f"{path}: {data.attrs['title']}"]
-    sealed, found = data.encoding["sealed"], damage(data)
-    checked = f"damaged      {found}; {REMEDY}" if found else "checksums    all hold"
+    sealed, lost = data.encoding["sealed"], damage(data)
+    checked = f"damaged      {lost}; {REMEDY}" if lost else "checksums    all hold"
     if not sealed:
         checked = "checksums    none: written, or changed, by another program"
     made_by = ["made by" if sealed else "written from a file that was made by"]
@@ -73,9 +73,9 @@ def _examined(data: xarray.Dataset, path: Path) -> Description:
     lines += [*_progress(sweep), checked]
     if not data.encoding["complete"] and NOT_COMPUTED not in sweep.values("status"):
         lines.append("unfinished   its last line is missing; `--resume` completes it")
-    if not found:
+    if not lost:
         lines += [*_untouched(sweep), *_turning(sweep), *_exponents(sweep), *_accuracy(sweep)]
-    return Description("\n".join([*lines, *made_by]), bool(found))
+    return Description("\n".join([*lines, *made_by]), bool(lost))
 
 
 def _in_order(sweep: Sweep) -> list[str]:
@@ -102,7 +102,7 @@ def _dataset(name: str, shape: tuple[int, ...], description: str) -> str:
 
 def _tables(data: xarray.Dataset) -> list[str]:
     """The tables of a file of branches or windows."""
-    arrays = {str(name): one.values for name, one in data.data_vars.items()}
+    arrays = {str(name): variable.values for name, variable in data.data_vars.items()}
     parameters = [str(name) for name in np.atleast_1d(data.attrs["parameters"])]
     if data.attrs["kind"] == WINDOWS:
         return windows_table(arrays, parameters)
@@ -120,7 +120,10 @@ def _progress(sweep: Sweep) -> list[str]:
         f"computed     {done:,} of {total:,} orbits ({100 * done / total:.4g} %)",
         f"missing      {total - done:,}",
         f"failed       {sum(failed.values()):,}",
-        *(f"  {one.name}: {count:,}" + f"\n    {one.advice}" * bool(one.advice) for one, count in failed.items()),
+        *(
+            f"  {outcome.name}: {count:,}" + f"\n    {outcome.advice}" * bool(outcome.advice)
+            for outcome, count in failed.items()
+        ),
         *([f"not settled  {counts[NOT_SETTLED]:,}{_to_go(sweep)}"] if counts[NOT_SETTLED] else []),
     ]
 

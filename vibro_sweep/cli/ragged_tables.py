@@ -38,23 +38,25 @@ def windows_table(arrays: Mapping, parameters: list[str]) -> list[str]:
     lines.append("ends         " + _counted(named))
     reasons = np.asarray(arrays["orbit_reason"])
     codes, numbers = np.unique(reasons, return_counts=True)
-    found = {REASONS[code].name: int(count) for code, count in zip(codes.tolist(), numbers.tolist(), strict=True)}
-    covered = found.pop("in_a_window", 0)
-    lines.append(f"orbits       {covered:,} of {reasons.size:,} in windows" + (f"; {_counted(found)}" if found else ""))
+    counts = {REASONS[code].name: int(count) for code, count in zip(codes.tolist(), numbers.tolist(), strict=True)}
+    covered = counts.pop("in_a_window", 0)
+    lines.append(
+        f"orbits       {covered:,} of {reasons.size:,} in windows" + (f"; {_counted(counts)}" if counts else "")
+    )
     return [*lines, *_families(arrays), *_unvisited(arrays, parameters)]
 
 
 def _families(arrays: Mapping) -> list[str]:
     """A line for each family of windows."""
     branches, words = np.asarray(arrays["window_branch"]), _words(arrays)
-    own, symmetric = [words[branch] for branch in branches.tolist()], np.asarray(arrays["window_symmetric"])
+    itineraries, symmetric = [words[branch] for branch in branches.tolist()], np.asarray(arrays["window_symmetric"])
     lo, periods = np.asarray(arrays["window_lo"]), np.asarray(arrays["window_period"])
     lines = []
-    for family in families(own, symmetric.tolist(), periods.tolist(), lo.tolist()):
+    for family in families(itineraries, symmetric.tolist(), periods.tolist(), lo.tolist()):
         first, last = lo[family.windows[0]], lo[family.windows[-1]]
         kind = "symmetric, " if family.symmetric else ""
-        told = ", ".join(str(periods[w]) for w in family.windows)
-        lines.append(f"family       {kind}{_short(family.itinerary)}: periods {told}; from {first:.6g} to {last:.6g}")
+        listed = ", ".join(str(periods[w]) for w in family.windows)
+        lines.append(f"family       {kind}{_short(family.itinerary)}: periods {listed}; from {first:.6g} to {last:.6g}")
     return lines
 
 
@@ -74,8 +76,10 @@ def _unvisited(arrays: Mapping, parameters: list[str]) -> list[str]:
         row = [f"{arrays[name][first[branches[w]]]:.10g}" for name in held]
         rows.append((*row, lo, hi, *kind, str(arrays["unvisited_values"][u]), at, start))
     count = len(rows) - 1
-    told = "1 stretch of a window" if count == 1 else f"{count} stretches of windows"
-    return [f"coexistence  {told} on which the sweep shows other attractors only", *_aligned(rows)] if count else []
+    stretches = "1 stretch of a window" if count == 1 else f"{count} stretches of windows"
+    return (
+        [f"coexistence  {stretches} on which the sweep shows other attractors only", *_aligned(rows)] if count else []
+    )
 
 
 def special_table(arrays: Mapping, parameters: list[str]) -> list[str]:
@@ -88,21 +92,21 @@ def curves_table(arrays: Mapping, parameters: list[str]) -> list[str]:
     """A line for each special point of each curve; then how many curves of which type."""
     kinds = [CURVES[code] for code in np.asarray(arrays["branch_type"]).tolist()]
     names = [CODIMENSION_TWO[code].name for code in np.asarray(arrays["special_type"]).tolist()]
-    told = _special(arrays, "curve", "curves", parameters, names, kinds)
-    told += ["curves       " + _counted(Counter(kinds))] if kinds else []
+    lines = _special(arrays, "curve", "curves", parameters, names, kinds)
+    lines += ["curves       " + _counted(Counter(kinds))] if kinds else []
     if "edge_reason" not in arrays:
-        return told
+        return lines
     codes = Counter(np.asarray(arrays["edge_reason"]).tolist())
-    found = {EDGES[code].name: count for code, count in sorted(codes.items())}
-    return [*told, f"edges        {sum(found.values()):,} between points of different periods: {_counted(found)}"]
+    counts = {EDGES[code].name: count for code, count in sorted(codes.items())}
+    return [*lines, f"edges        {sum(counts.values()):,} between points of different periods: {_counted(counts)}"]
 
 
 def _special(
-    arrays: Mapping, one: str, many: str, parameters: list[str], types: list[str], of: list[str] | None = None
+    arrays: Mapping, single: str, many: str, parameters: list[str], types: list[str], of: list[str] | None = None
 ) -> list[str]:
     """A line for each special point, of one of these types; of each curve the type that it is a curve `of`."""
     words = [_short(word) for word in _words(arrays)]
-    rows = [("point", one, *([] if of is None else ["of"]), *parameters, "type", "period", "impacts", "error")]
+    rows = [("point", single, *([] if of is None else ["of"]), *parameters, "type", "period", "impacts", "error")]
     values = np.asarray(arrays["special_value"])
     for s, branch in enumerate(np.asarray(arrays["special_branch"]).tolist()):
         place = [
@@ -143,8 +147,8 @@ def _words(arrays: Mapping) -> list[str]:
     """The itinerary of each branch."""
     sizes, impacts = (np.asarray(arrays[name]).astype(int) for name in ("branch_row_size", "branch_impacts"))
     first, sides = np.append(0, np.cumsum(sizes * impacts)), np.asarray(arrays["impact_side"])
-    own = (sides[begin : begin + count] for begin, count in zip(first[:-1], impacts, strict=True))
-    return ["".join("R" if side > 0 else "L" for side in one) for one in own]
+    of_each = (sides[begin : begin + count] for begin, count in zip(first[:-1], impacts, strict=True))
+    return ["".join("R" if side > 0 else "L" for side in events) for events in of_each]
 
 
 def _short(word: str) -> str:
@@ -152,8 +156,8 @@ def _short(word: str) -> str:
     return f"{word.count('R')} R {word.count('L')} L" if len(word) > LONGEST_WORD else word or "none"
 
 
-def _counted(found: Mapping[str, int]) -> str:
-    return ", ".join(f"{count:,} {name.replace('_', '-')}" for name, count in found.items())
+def _counted(counts: Mapping[str, int]) -> str:
+    return ", ".join(f"{count:,} {name.replace('_', '-')}" for name, count in counts.items())
 
 
 def _aligned(rows: list[tuple[str, ...]]) -> list[str]:

@@ -86,15 +86,18 @@ def cost_text(cost: "Estimate") -> str:
 
 def model_list() -> str:
     """The output of `models`: a line for each model, and for each law of contact that its stops may have."""
-    models = [f"{name:<16} {one.title}" for name, one in MODELS.items()]
-    laws = [f"{name:<16} {one.title}: {', '.join(one.names['right'])}" for name, one in LAWS.items()]
+    models = [f"{name:<16} {model.title}" for name, model in MODELS.items()]
+    laws = [f"{name:<16} {law.title}: {', '.join(law.names['right'])}" for name, law in LAWS.items()]
     return "\n".join([*models, "", "stops, of every model:", *laws])
 
 
 def law_text(law: ContactLaw) -> str:
     """The output of `models NAME` for a law of contact: its equation, numbers with their ranges, words and source."""
-    rows = [(one.name, one.range.text, one.text) for one in law.numbers_of_both]
-    rows += [(one.name, " or ".join(one.words), f"{one.text} [{one.words[0]}]") for one in law.options]
+    rows = [(declared.name, declared.range.text, declared.text) for declared in law.numbers_of_both]
+    rows += [
+        (declared.name, " or ".join(declared.words), f"{declared.text} [{declared.words[0]}]")
+        for declared in law.options
+    ]
     wide = [max(len(row[column]) for row in rows) for column in (0, 1)]
     lines = [f"  {name:<{wide[0]}}  {allowed:<{wide[1]}}  {text}" for name, allowed, text in rows]
     return "\n".join(
@@ -104,12 +107,12 @@ def law_text(law: ContactLaw) -> str:
 
 def model_text(model: Model) -> str:
     """The output of `models NAME`: equations, sketch, numbers with their ranges, options, source."""
-    numbers = [(one.name, one.range.text, one) for one in model.numbers]
-    options = [(one.name, _allowed(one), one) for one in model.options]
+    numbers = [(declared.name, declared.range.text, declared) for declared in model.numbers]
+    options = [(declared.name, _allowed(declared), declared) for declared in model.options]
     wide = [max(len(row[column]) for row in numbers + options) for column in (0, 1)]
     rows = [
-        f"  {name:<{wide[0]}}  {allowed:<{wide[1]}}  {one.text}{_each(one)}{_default(one)}"
-        for name, allowed, one in numbers + options
+        f"  {name:<{wide[0]}}  {allowed:<{wide[1]}}  {declared.text}{_each(declared)}{_default(declared)}"
+        for name, allowed, declared in numbers + options
     ]
     sketch, equations = model.sketch.strip("\n"), model.equations.strip("\n")
     return "\n".join(
@@ -117,21 +120,21 @@ def model_text(model: Model) -> str:
     )
 
 
-def _allowed(one: Option) -> str:
+def _allowed(declared: Option) -> str:
     kinds = {"flag": "true or false", "whole": "a whole number", "matrix": "a matrix", "vector": "a list of numbers"}
     kinds["units"] = "SI or three numbers"
-    return kinds.get(one.kind) or " or ".join(one.words)
+    return kinds.get(declared.kind) or " or ".join(declared.words)
 
 
-def _each(one: Parameter | Option) -> str:
-    each = getattr(one, "each", "")
+def _each(declared: Parameter | Option) -> str:
+    each = getattr(declared, "each", "")
     return f"; a list, one for each {each}" if each else ""
 
 
-def _default(one: Parameter | Option) -> str:
-    if one.default is None:
+def _default(declared: Parameter | Option) -> str:
+    if declared.default is None:
         return ""
-    return f" [{str(one.default).lower() if isinstance(one.default, bool) else one.default}]"
+    return f" [{str(declared.default).lower() if isinstance(declared.default, bool) else declared.default}]"
 
 
 def advice_on(scene: "Scene") -> str:
@@ -159,7 +162,7 @@ def summary(output: Path, report: "RunReport", settle: int | None = None) -> str
         state += f"; {unsettled:,} not settled yet: {longer}"
     if not report.computed:
         return f"{output} is complete already, from the same scene: {points(report.points)}, {state}"
-    advice = [f"\n{one.name}: {one.advice}" for one in STATUSES if one.name in bad]
+    advice = [f"\n{outcome.name}: {outcome.advice}" for outcome in STATUSES if outcome.name in bad]
     here = "" if report.computed == report.points else f"{report.computed:,} of "
     return f"{output}: {here}{points(report.points)} in {duration(report.seconds)}, {state}{''.join(advice)}"
 

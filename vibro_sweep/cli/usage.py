@@ -58,14 +58,14 @@ def _explained(error) -> str:
     path = context.command_path if context else "vibro-sweep"
     text = error.format_message().strip().rstrip(".")
     hint = f"`{path} --help` shows what there is"
-    if found := re.match(r"No such command '([^']*)'", text):
-        text, hint = f"there is no command {found[1]!r}", _command_meant(found[1], context) or hint
-    elif found := re.match(r"No such option:? '?(-[^\s']*)'?", text):
-        text, hint = f"there is no option {found[1]}", _option_meant(found[1], context) or hint
-    elif found := re.search(r"[Ff]ile '([^']*)' does not exist", text):
-        near = _file_meant(found[1])
+    if known_form := re.match(r"No such command '([^']*)'", text):
+        text, hint = f"there is no command {known_form[1]!r}", _command_meant(known_form[1], context) or hint
+    elif known_form := re.match(r"No such option:? '?(-[^\s']*)'?", text):
+        text, hint = f"there is no option {known_form[1]}", _option_meant(known_form[1], context) or hint
+    elif known_form := re.search(r"[Ff]ile '([^']*)' does not exist", text):
+        near = _file_meant(known_form[1])
         hint = f"did you mean {near}?" if near else ""
-        if (pieces := Path(found[1] + _suffix_of_pieces())).is_dir():
+        if (pieces := Path(known_form[1] + _suffix_of_pieces())).is_dir():
             hint = f"{pieces} beside it is of a run that was interrupted, which --resume continues"
     return f"{text}; {hint}" if hint else text
 
@@ -85,7 +85,7 @@ def _command_meant(word: str, context) -> str:
 
 
 def _option_meant(word: str, context) -> str:
-    known = [one for parameter in context.command.params for one in parameter.opts] if context else []
+    known = [option for parameter in context.command.params for option in parameter.opts] if context else []
     if _OPTIONS.get(word) in known:
         return f"did you mean {_OPTIONS[word]}?"
     close = difflib.get_close_matches(word, known, n=1)
@@ -98,6 +98,6 @@ def _file_meant(name: str) -> str | None:
         if Path(name + ending).exists():
             return name + ending
     folder = Path(name).parent
-    near = [one.name for one in folder.iterdir()] if folder.is_dir() else []
+    near = [entry.name for entry in folder.iterdir()] if folder.is_dir() else []
     close = difflib.get_close_matches(Path(name).name, near, n=1, cutoff=0.8)
     return str(folder / close[0]) if close else None

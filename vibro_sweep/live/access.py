@@ -44,13 +44,13 @@ def origin_is_here(scope: Scope) -> bool:
 
 def knows_token(scope: Scope, token: str) -> bool:
     """Whether the query has the token; compared in a time that says nothing of it."""
-    given = parse_qs(scope.get("query_string", b"").decode("latin-1")).get("token", [""])[0]
-    return secrets.compare_digest(given.encode(), token.encode())
+    sent = parse_qs(scope.get("query_string", b"").decode("latin-1")).get("token", [""])[0]
+    return secrets.compare_digest(sent.encode(), token.encode())
 
 
 def _header(scope: Scope, name: bytes) -> str:
-    found = [value for key, value in scope["headers"] if key == name]
-    return found[0].decode("latin-1") if len(found) == 1 else ""
+    values = [value for key, value in scope["headers"] if key == name]
+    return values[0].decode("latin-1") if len(values) == 1 else ""
 
 
 def _name(host: str) -> str | None:

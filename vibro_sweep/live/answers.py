@@ -37,8 +37,8 @@ class Answers:
         wanted = [*needed(system, view.y), "period", *EXPONENTS, "end"]
         values = next(iter(scene.sweep.values()))
         ends = np.full((view.columns, scene.n_starts, 2 * system.masses), np.nan)
-        about = {"columns": view.columns, "starts": scene.n_starts, "middle": request.middle, "record": scene.record}
-        about |= _lines(scene)
+        shared = {"columns": view.columns, "starts": scene.n_starts, "middle": request.middle, "record": scene.record}
+        shared |= _lines(scene)
         self._view = None
         for frame in frames(scene, variables=wanted, pace=self._pace):
             dots, arrays = _dots(frame, scene, view.y, request.middle)
@@ -51,7 +51,7 @@ class Answers:
                 )
             if frame.last:
                 self._view, self._ends = view, ends
-            yield binary_message("frame", request.seq, arrays | dots, **about, **_place(frame))
+            yield binary_message("frame", request.seq, arrays | dots, **shared, **_place(frame))
 
     def click(self, request: ClickedOrbit | Open | Save) -> Message:
         """The answer to what takes a moment."""
@@ -61,15 +61,15 @@ class Answers:
 
     def orbit(self, request: ClickedOrbit) -> Message:
         """The orbit at a value."""
-        found, went_on = self._settled(request)
-        arrays, words = orbit_message(found)
+        settled_orbit, went_on = self._settled(request)
+        arrays, words = orbit_message(settled_orbit)
         words |= {"value": request.value, "went_on": went_on}
         return binary_message("orbit", request.seq, arrays, **words)
 
     def window(self, request: WindowEnds, progress: Callable[[int, float], None]) -> Message:
         """Why a window ends. progress : called while branches are followed"""
-        found, _ = self._settled(request)
-        arrays, words = window_message(request.view, request.value, found, progress)
+        settled_orbit, _ = self._settled(request)
+        arrays, words = window_message(request.view, request.value, settled_orbit, progress)
         return binary_message("window", request.seq, arrays, value=request.value, **words)
 
     def opened(self, request: Open) -> Message:
@@ -132,5 +132,6 @@ def _lines(scene: Scene) -> dict[str, Any]:
     """The grazing clearances, where the clearance is swept."""
     if "b" not in scene.sweep:
         return {}
-    found = grazing(scene.system)
-    return {"b_star": sorted({value for one in (found.b_right, found.b_left) if (value := number(one)) is not None})}
+    graze = grazing(scene.system)
+    clearances = {number(graze.b_right), number(graze.b_left)} - {None}
+    return {"b_star": sorted(clearances)}

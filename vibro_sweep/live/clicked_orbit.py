@@ -44,11 +44,11 @@ def settled(view: View, value: float, start: int, end: np.ndarray | None) -> Set
     )
     system = scene.system.replace(**{view.axis: value})
     if end is not None:
-        one = scene.replace(system=system, sweep=None, start=end, transient=_lead(system))
+        of_one_orbit = scene.replace(system=system, sweep=None, start=end, transient=_lead(system))
     else:
         alone = None if scene.start.kind != "follow" else scene.start.state
-        one = scene.replace(system=system, sweep=None, **({} if alone is None else {"start": alone}))
-    return _computed(one, system, start, scene.start.kind == "follow" and end is None)
+        of_one_orbit = scene.replace(system=system, sweep=None, **({} if alone is None else {"start": alone}))
+    return _computed(of_one_orbit, system, start, scene.start.kind == "follow" and end is None)
 
 
 def _lead(system: Oscillator) -> int:
@@ -71,7 +71,7 @@ def orbit_message(found: Settled) -> tuple[dict[str, np.ndarray], dict[str, Any]
     words: dict[str, Any] = {"status": status_of(found.status).text, "period": found.period, "alone": found.alone}
     words |= {"T": _finite(system.period), "low": _finite(q.low), "high": _finite(q.high), "masses": system.masses}
     words |= {"normal": q.normal.tolist(), "mapping": found.mapping}
-    words["pressed"] = [bool(one) for one in q.is_compliant((-1, 1))]
+    words["pressed"] = [bool(soft) for soft in q.is_compliant((-1, 1))]
     arrays = {"exponents": found.exponents, "errors": found.errors, "section": found.section.astype("f4").ravel()}
     if found.mapping or not is_valid(found.status):
         return arrays, words | {"periods": 0}

@@ -104,7 +104,7 @@ class EngineThreads:
     def _turns(self) -> None:
         while True:
             with self._changed:
-                visitor = self._next(lambda one: bool(one.clicks or one.sweep or one.frames))
+                visitor = self._next(lambda page: bool(page.clicks or page.sweep or page.frames))
                 if visitor is None:
                     return
                 click = visitor.clicks.pop(next(iter(visitor.clicks))) if visitor.clicks else None
@@ -123,7 +123,7 @@ class EngineThreads:
     def _slow_turns(self) -> None:
         while True:
             with self._changed:
-                visitor = self._next(lambda one: one.window is not None)
+                visitor = self._next(lambda page: page.window is not None)
                 if visitor is None:
                     return
                 request, visitor.window = visitor.window, None

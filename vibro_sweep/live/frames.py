@@ -96,7 +96,7 @@ def _frames(
 
 
 def _preview(scene: Scene, whole: Block, wanted: frozenset[str], preview: Preview, pace: Pace) -> Frame:
-    section = {name for name, one in quantities(scene).items() if one.dimensions == ("sample",)}
+    section = {name for name, quantity in quantities(scene).items() if quantity.dimensions == ("sample",)}
     draft = draft_of(whole, preview.transient, preview.record, (wanted & section) | {"status"})
     part = columns_of(draft, slice(None, None, pace.step(draft, preview.columns, preview.seconds)))
     return _computed("preview", part, draft, pace, last=False)[0]
@@ -131,9 +131,9 @@ def _computed(
     began = time.perf_counter()
     box, arrays = compute(block)
     ends = arrays.pop(CHAIN_ENDS, None)
-    taken = time.perf_counter() - began
-    pace.measured(whole, len(next(iter(block.axes.values()))), taken)
-    return Frame(kind, box, arrays, taken, kind == "piece", last), ends
+    elapsed = time.perf_counter() - began
+    pace.measured(whole, len(next(iter(block.axes.values()))), elapsed)
+    return Frame(kind, box, arrays, elapsed, kind == "piece", last), ends
 
 
 def _bit_reversed(count: int) -> list[int]:

@@ -19,13 +19,13 @@ def binary_message(type: str, seq: int, arrays: Mapping[str, np.ndarray], **valu
 
     The text has `arrays`: name, type and length of each, in their order.
     """
-    packed = {name: np.ascontiguousarray(one.astype(one.dtype.newbyteorder("<"))) for name, one in arrays.items()}
-    about = [[name, one.dtype.name, one.size] for name, one in packed.items()]
-    text = json.dumps({"type": type, "seq": seq, "arrays": about} | values, allow_nan=False).encode()
+    packed = {name: np.ascontiguousarray(array.astype(array.dtype.newbyteorder("<"))) for name, array in arrays.items()}
+    described = [[name, array.dtype.name, array.size] for name, array in packed.items()]
+    text = json.dumps({"type": type, "seq": seq, "arrays": described} | values, allow_nan=False).encode()
     text += b" " * (-(4 + len(text)) % ALIGNED)
     parts = [np.uint32(len(text)).astype("<u4").tobytes(), text]
-    for one in packed.values():
-        data = one.tobytes()
+    for array in packed.values():
+        data = array.tobytes()
         parts += [data, b"\0" * (-len(data) % ALIGNED)]
     return b"".join(parts)
 

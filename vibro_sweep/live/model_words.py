@@ -34,9 +34,9 @@ def model_words(scene: Scene, view: View) -> dict[str, Any]:
     system = scene.system
     stops = system.options.get("stops", "both")
     numbers = [
-        _slider(one, value, view, stops)
-        for name, one in system.described.items()
-        if isinstance(value := _value(system, view, one), (int, float))
+        _slider(quantity, value, view, stops)
+        for name, quantity in system.described.items()
+        if isinstance(value := _value(system, view, quantity), (int, float))
         and not (name.endswith("_left") and stops != "both")
         and not (scene.dynamics == "map" and name.startswith(("offset", "R_left", "constant", "tau")))
     ]
@@ -45,27 +45,28 @@ def model_words(scene: Scene, view: View) -> dict[str, Any]:
         "mapping": not system.linear.compliant,
         "heights": [[name, _label(name)] for name in heights(scene)],
         "title": MODELS[system.model.name].title if system.model.name in MODELS else system.model.name,
-        "stops": [one if np.isfinite(one) else None for one in (system.linear.low, system.linear.high)],
+        "stops": [stop if np.isfinite(stop) else None for stop in (system.linear.low, system.linear.high)],
         "colours": _colours(),
-        "statuses": {str(code): one.text for code, one in enumerate(STATUSES, NOT_COMPUTED)},
+        "statuses": {str(code): outcome.text for code, outcome in enumerate(STATUSES, NOT_COMPUTED)},
         "not_settled": NOT_SETTLED,
         "certain": CERTAIN,
     }
 
 
-def _value(system: Oscillator, view: View, one: Parameter) -> Any:
+def _value(system: Oscillator, view: View, quantity: Parameter) -> Any:
     """What a number is; of one that is left out what it follows, or what a compliant stop has without it."""
-    given = {**system.numbers, **view.numbers}
+    numbers_now = {**system.numbers, **view.numbers}
     for side in ("right", "left"):
-        if one.name in COMPLIANT.names[side] and (stop := stop_of(given, side)).law is COMPLIANT:
-            return stop.number(one.name.removesuffix("_left"), 0.0)
-    return given[one.follows] if one.follows and given[one.name] is None else given[one.name]
+        if quantity.name in COMPLIANT.names[side] and (stop := stop_of(numbers_now, side)).law is COMPLIANT:
+            return stop.number(quantity.name.removesuffix("_left"), 0.0)
+    value = numbers_now[quantity.name]
+    return numbers_now[quantity.follows] if quantity.follows and value is None else value
 
 
-def _slider(one: Parameter, value: float, view: View, stops: str) -> dict[str, Any]:
+def _slider(quantity: Parameter, value: float, view: View, stops: str) -> dict[str, Any]:
     """A number and the range of its slider: where its values can be at all, around the one that it has."""
-    allowed = range_of(one, stops)
-    logarithmic = allowed.bounds == POSITIVE.bounds or (one.name in STIFFNESSES and value > 0)
+    allowed = range_of(quantity, stops)
+    logarithmic = allowed.bounds == POSITIVE.bounds or (quantity.name in STIFFNESSES and value > 0)
     bounds = allowed.bounds
     if "maximum" in bounds:
         low, high = bounds["minimum"], bounds["maximum"]
@@ -75,12 +76,13 @@ def _slider(one: Parameter, value: float, view: View, stops: str) -> dict[str, A
         low, high = bounds["minimum"], max(4 * value, 1.0)
     else:
         low, high = value - max(1.0, 2 * abs(value)), value + max(1.0, 2 * abs(value))
-    if one.name == view.axis:
+    if quantity.name == view.axis:
         low, high, logarithmic = view.low, view.high, False
-    words = {"name": one.name, "symbol": _plain(one.symbol), "label": one.label, "text": one.text, "value": value}
+    words = {"name": quantity.name, "symbol": _plain(quantity.symbol), "label": quantity.label}
+    words |= {"text": quantity.text, "value": value}
     low, high = max(low, -LARGEST), min(high, LARGEST)
-    leader = one.follows if view.system.get(one.name) is None else ""
-    words |= {"leader": leader, "follows": bool(leader) and one.name not in view.numbers}
+    leader = quantity.follows if view.system.get(quantity.name) is None else ""
+    words |= {"leader": leader, "follows": bool(leader) and quantity.name not in view.numbers}
     return words | {"low": low, "high": high, "log": logarithmic, "allowed": (allowed or NUMBER).text}
 
 

@@ -13,8 +13,8 @@ from vibro_sweep.scene.scene import parse_scene
 
 def presets_of(paths: Iterable[Path]) -> dict[str, Scene]:
     """The scenes of these files that sweep a number of an oscillator, by name; others have no diagram."""
-    found = {path.stem: load_scene(path) for path in paths}
-    return {name: scene for name, scene in found.items() if isinstance(scene, Scene) and _has_axis(scene)}
+    scenes = {path.stem: load_scene(path) for path in paths}
+    return {name: scene for name, scene in scenes.items() if isinstance(scene, Scene) and _has_axis(scene)}
 
 
 def scene_to_explore(path: Path) -> Scene:

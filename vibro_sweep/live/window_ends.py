@@ -25,67 +25,67 @@ NEAR = 1e-9  # relative: grazes nearer than this are the same
 
 
 def window_message(
-    view: View, value: float, found: Settled, progress: Callable[[int, float], None]
+    view: View, value: float, settled_orbit: Settled, progress: Callable[[int, float], None]
 ) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
     """Arrays and words on the window around a value: its ends, and the branches that meet there; or `reason`.
 
     The first branch is that of which the window is a part. progress : as of `continue_orbit`
     """
-    if found.mapping:
+    if settled_orbit.mapping:
         return {}, {"reason": "windows are those of the oscillator itself, and this is its mapping"}
-    if found.period == 0:
-        return {}, {"reason": _not_periodic(found)}
-    bounds = _bounds(view, found)
-    job = Job(found.system, found.end, found.period, view.axis, bounds)
+    if settled_orbit.period == 0:
+        return {}, {"reason": _not_periodic(settled_orbit)}
+    bounds = _bounds(view, settled_orbit)
+    job = Job(settled_orbit.system, settled_orbit.end, settled_orbit.period, view.axis, bounds)
     arrays = window_of(job)
     if "reason" in arrays:
         found_out = REASONS[int(arrays["reason"])]
         return {}, {"reason": f"no window here: {found_out.text}. {found_out.advice}".strip()}
-    window = branch_of(arrays, view.axis, found.system)
+    window = branch_of(arrays, view.axis, settled_orbit.system)
     orbit = window._start
-    event = "contact" if found.system.linear.compliant else "impact"
+    event = "contact" if settled_orbit.system.linear.compliant else "impact"
     words: dict[str, Any] = {"low": _end(window.begins, -1, event), "high": _end(window.ends, 1, event), "event": event}
     words |= {"period": int(arrays["branch_period"]), "symmetric": bool(arrays["branch_symmetric"])}
-    origin = found.system.replace(**{view.axis: float(arrays["value"][int(arrays["branch_origin"])])})
+    origin = settled_orbit.system.replace(**{view.axis: float(arrays["value"][int(arrays["branch_origin"])])})
     orbit = PeriodicOrbit(origin, "ok", orbit)
     words["itinerary"] = orbit.itinerary
-    words["mirrored"] = found.system.linear.symmetric and not orbit.symmetric
+    words["mirrored"] = settled_orbit.system.linear.symmetric and not orbit.symmetric
     branches = [continue_orbit(orbit, view.axis, bounds, progress)]
     branches += _met((window.begins, window.ends), view.axis, bounds, progress)
-    drawn = [_drawn(view, found, _thinned(arrays_of(one, value))) for one in branches]
-    words["specials"] = [_end(one, 0, event) for one in branches[0].special]
-    words["branches"] = [[len(one["value"]), len(one["y"]) // len(one["value"])] for one in drawn]
-    return {name: np.concatenate([one[name] for one in drawn]) for name in drawn[0]}, words
+    drawn = [_drawn(view, settled_orbit, _thinned(arrays_of(branch, value))) for branch in branches]
+    words["specials"] = [_end(special, 0, event) for special in branches[0].special]
+    words["branches"] = [[len(lines["value"]), len(lines["y"]) // len(lines["value"])] for lines in drawn]
+    return {name: np.concatenate([lines[name] for lines in drawn]) for name in drawn[0]}, words
 
 
 def _met(ends: tuple[SpecialPoint, ...], axis: str, bounds: tuple[float, float], progress) -> list[Branch]:
     """The branches that a motion meets at grazes, where an impact appears or vanishes; one that leads from graze to
     graze once."""
-    found: list[Branch] = []
+    beyond: list[Branch] = []
     for end in ends:
-        if end.type == "graze" and not any(_ends_at(one, end, axis) for one in found):
-            found += [continue_orbit(one, axis, bounds, progress) for one in switch(end)]
-    return found
+        if end.type == "graze" and not any(_ends_at(branch, end, axis) for branch in beyond):
+            beyond += [continue_orbit(start, axis, bounds, progress) for start in switch(end)]
+    return beyond
 
 
 def _ends_at(branch: Branch, end: SpecialPoint, axis: str) -> bool:
     value = end.parameters[axis]
     near = NEAR * max(abs(value), 1.0)
-    return any(one.type == "graze" and abs(one.parameters[axis] - value) <= near for one in branch.special)
+    return any(special.type == "graze" and abs(special.parameters[axis] - value) <= near for special in branch.special)
 
 
-def _not_periodic(found: Settled) -> str:
-    if not is_valid(found.status):
-        return status_of(found.status).text
-    if found.exponents[0] > CERTAIN * found.errors[0]:
+def _not_periodic(settled_orbit: Settled) -> str:
+    if not is_valid(settled_orbit.status):
+        return status_of(settled_orbit.status).text
+    if settled_orbit.exponents[0] > CERTAIN * settled_orbit.errors[0]:
         return "no window here: " + named(REASONS, "chaos").text
     return "no window here: no period was found within the record; a longer transient or record may find one"
 
 
-def _bounds(view: View, found: Settled) -> tuple[float, float]:
+def _bounds(view: View, settled_orbit: Settled) -> tuple[float, float]:
     """What is looked at: the view, and as much again on both sides where the number may be there."""
     width = view.high - view.low
-    allowed = range_of(found.system.described[view.axis], found.system.options.get("stops", "both"))
+    allowed = range_of(settled_orbit.system.described[view.axis], settled_orbit.system.options.get("stops", "both"))
     low, high = (
         wide if allowed.holds(np.array(wide)) else near
         for wide, near in ((view.low - width, view.low), (view.high + width, view.high))
@@ -120,14 +120,14 @@ def _thinned(arrays: Arrays) -> Arrays:
     return arrays | {name: arrays[name][keep] for name in of_points}
 
 
-def _drawn(view: View, found: Settled, arrays: Arrays) -> dict[str, np.ndarray]:
+def _drawn(view: View, settled_orbit: Settled, arrays: Arrays) -> dict[str, np.ndarray]:
     """Values (n,), whether unstable (n,), and what stands on the vertical axis (n, m) of the section points."""
     if view.y in SPEEDS:
         side = 1 if SPEEDS[view.y] == "right" else -1
         points = np.abs(arrays["impact_v"][:, arrays["impact_side"] == side])
     else:
-        states = sections_of(arrays, view.axis, found.system)
-        named = {name: states[..., i] for i, name in enumerate(state(found.system.masses))}
-        named["gap"] = states[..., 0::2] @ found.system.linear.normal
-        points = height_of(found.system, view.y, named)
+        states = sections_of(arrays, view.axis, settled_orbit.system)
+        named = {name: states[..., i] for i, name in enumerate(state(settled_orbit.system.masses))}
+        named["gap"] = states[..., 0::2] @ settled_orbit.system.linear.normal
+        points = height_of(settled_orbit.system, view.y, named)
     return {"value": arrays["value"], "unstable": np.minimum(arrays["unstable"], 1).astype("i1"), "y": points.ravel()}
