@@ -3,10 +3,12 @@
 import gc
 import json
 import re
+import shutil
 import subprocess
 import sys
 from types import SimpleNamespace
 
+import h5py
 import numpy as np
 import pytest
 from support import ROOT
@@ -124,6 +126,49 @@ def test_run_then_look(scene_folder, capsys):
     assert "computed     3 of 3 orbits (100 %)" in lines and "checksums    all hold" in lines
     assert main(["plot", "good.h5", "-o", "picture.svg"]) == 0
     assert (scene_folder / "picture.svg").exists()
+
+
+def test_several_files(scene_folder, capsys):
+    """Each is said or drawn; a damaged one is told, and its exit status, whatever its place."""
+    assert main(["run", "good.yaml", "--quiet"]) == 0
+    shutil.copy("good.h5", "other.h5")
+    with open("other.h5", "r+b") as file:
+        with h5py.File("other.h5") as h5:
+            file.seek(h5["x1"].id.get_offset())
+        file.write(b"12345678")
+    files = ["other.h5", "good.h5"]
+    capsys.readouterr()
+    assert main(["info", *files]) == 2
+    text = capsys.readouterr().out
+    assert text.count("\ncomputed     3 of 3") == 2 and "\n\ngood.h5: vibro_sweep: good\n" in text
+    assert main(["info", "--json", *files]) == 2
+    other, good = map(json.loads, capsys.readouterr().out.splitlines())
+    assert (other["file"], good["file"], good["damaged"]) == ("other.h5", "good.h5", "") and "x1" in other["damaged"]
+    assert good["statuses"] == {"ok": 3} and good["axes"] == {"b": [6.5, 6.6, 6.7]} and good["attributes"]["R"] == 0.8
+    assert good["variables"]["x1"]["dimensions"] == ["b", "sample"] and good["complete"] is True
+    assert main(["plot", "good.h5", "good.h5", "-o", "x.png"]) == 2
+    assert "--output names one picture" in capsys.readouterr().err
+    shutil.copy("good.h5", "again.h5")
+    assert main(["plot", "good.h5", "again.h5"]) == 0
+    assert capsys.readouterr().out.split() == ["good.png", "again.png"]
+    assert (scene_folder / "again.png").exists()
+
+
+@pytest.mark.slow
+def test_windows_and_branches_as_json(scene_folder, capsys):
+    system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=6.6)
+    vs.sweep(system, {"b": {"start": 5.4, "stop": 5.8, "num": 5}}, output="range.h5")
+    capsys.readouterr()
+    assert main(["windows", "range.h5", "--json"]) == 0
+    (line,) = capsys.readouterr().out.splitlines()
+    windows = vs.load("range.windows.h5")
+    table = json.loads(line)["table"]
+    assert [(row["lo"], row["hi"], row["upper"]) for row in table] == [(w.lo, w.hi, w.upper.type) for w in windows]
+    branch = vs.continue_orbit(vs.periodic_orbit(system, itinerary="R"), "b", (4, 7))
+    branch.save("branch.h5")
+    assert main(["info", "branch.h5", "--json"]) == 0
+    known = json.loads(capsys.readouterr().out)
+    assert known["kind"] == "branches" and len(known["table"]) == len(branch.special)
 
 
 def test_existing_file_is_kept_unless_told(scene_folder, capsys):

@@ -22,7 +22,7 @@ from support.scene_texts import parsed
 
 import vibro_sweep as vs
 
-SUFFIXES = (".png", ".svg", ".pdf")
+SUFFIXES = (".png", ".jpg", ".svg", ".pdf", ".eps")
 
 
 @pytest.mark.parametrize("suffix", slow_cases(*SUFFIXES))
@@ -50,7 +50,7 @@ def test_a_picture_of_ours_is_drawn_anew_until_somebody_changes_it(folder, suffi
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("suffix", [".png", *slow_cases(".svg", ".pdf")])
+@pytest.mark.parametrize("suffix", SUFFIXES)
 def test_a_seal_makes_no_picture_worse(folder, suffix):
     """It is a chunk of text, or a comment."""
     vs.plot("x.h5", output=f"a{suffix}")
@@ -71,6 +71,15 @@ def test_a_seal_makes_no_picture_worse(folder, suffix):
         assert xml.etree.ElementTree.fromstring(content).tag.endswith("svg")
     if suffix == ".pdf":
         assert content.rstrip().splitlines()[-2] == b"%%EOF" and len(content.splitlines()[-1]) < 100
+    if suffix == ".jpg":
+        from PIL import Image
+
+        with Image.open("a.jpg") as picture:
+            assert (
+                picture.info["comment"].startswith(b"vibro_sweep sha256:") and picture.convert("L").getextrema()[0] < 99
+            )
+    if suffix == ".eps":
+        assert content.splitlines()[-2] == b"showpage" and content.splitlines()[-1].startswith(b"% vibro_sweep sha256:")
 
 
 @pytest.mark.parametrize(
@@ -145,10 +154,15 @@ def test_permissions_are_those_of_any_new_file(folder):
 
 
 @pytest.mark.parametrize(
-    ("suffix", "magic"), [(".png", b"\x89PNG"), *slow_cases((".svg", b"<?xml"), (".pdf", b"%PDF"))]
+    ("suffix", "magic"),
+    [
+        *[(".png", b"\x89PNG"), (".jpg", b"\xff\xd8\xff"), (".eps", b"%!PS-Adobe-3.0 EPSF")],
+        *slow_cases((".svg", b"<?xml"), (".pdf", b"%PDF")),
+    ],
 )
-def test_the_suffix_is_the_format(folder, suffix, magic):
+def test_the_suffix_is_the_format(folder, capfd, suffix, magic):
     assert main(["plot", "x.h5", "-o", f"figure{suffix}"]) == 0
+    assert capfd.readouterr().err == ""
     assert Path(f"figure{suffix}").read_bytes().startswith(magic)
 
 
@@ -186,9 +200,9 @@ def test_the_data_are_never_overwritten(folder):
     assert odd.read_bytes() == before
 
 
-@pytest.mark.parametrize("output", ["figure.jpg", "figure", "figure.h5"])
+@pytest.mark.parametrize("output", ["figure.bmp", "figure", "figure.h5"])
 def test_an_output_of_another_format_is_refused(folder, output):
-    with pytest.raises(vs.PlotError, match=r"\.png, \.svg, \.pdf"):
+    with pytest.raises(vs.PlotError, match=r"\.png, \.jpg, \.svg, \.pdf, \.eps"):
         vs.plot("x.h5", output=output)
     assert not Path(output).exists()
 

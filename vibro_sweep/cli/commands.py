@@ -44,6 +44,8 @@ Scheduler = Annotated[
 ]
 Resume = Annotated[bool, typer.Option("--resume", help="Continue an interrupted run.")]
 Overwrite = Annotated[bool, typer.Option("--overwrite", help="Replace an existing file.")]
+DataFiles = Annotated[list[Path], typer.Argument(metavar="FILE.h5", exists=True, dir_okay=False)]
+Json = Annotated[bool, typer.Option("--json", help="Print JSON, an object a file, each in a line.")]
 Quiet = Annotated[bool, typer.Option("--quiet", help="Print nothing but warnings and errors.")]
 
 
@@ -116,6 +118,7 @@ def windows_command(
     resume: Resume = False,
     overwrite: Overwrite = False,
     plot: Annotated[bool, typer.Option("--plot", help="Draw the sweep with its windows, next to the file.")] = False,
+    as_json: Json = False,
     quiet: Quiet = False,
 ):
     """Find the windows of a sweep and what ends them; write their file.
@@ -128,16 +131,16 @@ def windows_command(
     computation = Computation(output, workers, scheduler, resume, overwrite, plot, quiet, command)
     computation.announce()
     computation.check_outputs([file])
-    compute_windows(computation, file, parameter)
+    compute_windows(computation, file, parameter, as_json)
     if plot:
-        _draw(file, computation.picture, None, overwrite, quiet, windows=output)
+        _draw(file, computation.picture, None, overwrite, quiet or as_json, windows=output)
 
 
 @app.command("plot")
 def plot_command(
-    file: DataFile,
+    files: DataFiles,
     output: Annotated[
-        Path | None, output_option("FIGURE.png|.svg|.pdf|.gif|.mp4", "FILE.png in the current folder")
+        Path | None, output_option("FIGURE.png|.jpg|.svg|.pdf|.eps|.gif|.mp4", "FILE.png in the current folder")
     ] = None,
     kind: Annotated[
         str | None,
@@ -193,7 +196,7 @@ def plot_command(
         typer.Option("--overwrite", help="Replace an existing file, also one that is not a picture of this program."),
     ] = False,
 ):
-    """Draw what a file holds.
+    """Draw what files hold.
 
     Of a sweep, `vibro-sweep explore FILE.h5` shows the same diagram as a page with sliders.
     """
@@ -203,23 +206,32 @@ def plot_command(
     for name, text in (("width", width), ("dpi", dpi)):
         options[name] = text and number_in(f"--{name}", text)
     options |= {"windows": windows, "over": over, "relative": relative}
-    _draw(file, output, kind, overwrite, False, **options)
+    if output is not None and len(files) > 1:
+        raise InputError("--output names one picture; leave it out for several files: each is drawn into FILE.png")
+    for file in files:
+        _draw(file, output, kind, overwrite, False, **options)
 
 
 @app.command()
-def info(file: DataFile):
-    """Say what a file holds, how it was made, how far it is.
+def info(files: DataFiles, as_json: Json = False):
+    """Say what files hold, how they were made, how far they are.
 
-    Also how accurate it says it is.
+    Also how accurate they say they are.
     """
     from vibro_sweep.files.file_errors import StoreError
 
-    from .info import examine
+    if as_json:
+        from .as_json import description_of
+    else:
+        from .info import description_of
 
-    with input_errors(StoreError):
-        description = examine(file)
-    say(description.text)
-    if description.damaged:
+    any_damaged = False
+    for number, file in enumerate(files):
+        with input_errors(StoreError):
+            text, damaged = description_of(file)
+        say(f"\n{text}" if number and not as_json else text)
+        any_damaged |= damaged
+    if any_damaged:
         raise typer.Exit(BAD_INPUT)
 
 

@@ -104,13 +104,17 @@ def compute(computation: Computation, scene) -> bool:
     return of_sweep and bool(report.bad)
 
 
-def compute_windows(computation: Computation, file: Path, parameter: str | None) -> None:
+def compute_windows(computation: Computation, file: Path, parameter: str | None, as_json: bool) -> None:
     """Compute the windows of a sweep's file and print their table."""
     from vibro_sweep.driver.windows import run_windows
 
     with computation.under_way(ValueError) as (executor, progress):
         run_windows(file, computation.output, parameter, computation.workers, executor, progress, computation.mode)
-    if not computation.quiet:
+    if as_json:
+        from .as_json import description_of
+
+        say(description_of(computation.output)[0])
+    elif not computation.quiet:
         say_tables(computation.output)
 
 

@@ -5,7 +5,6 @@ import json
 import math
 from collections import Counter
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 import xarray
@@ -28,22 +27,15 @@ STRUCK = ("impacts_right", "impacts_left", "sticking_time")
 PRESSED = ("contacts_right", "contacts_left", "contact_time")
 
 
-class Description(NamedTuple):
-    """The lines about a file, and whether they say `damaged`."""
-
-    text: str
-    damaged: bool
-
-
 def tables(path: str | Path) -> list[str]:
     """The tables of a file of branches or windows, line by line. Raises StoreError."""
     with open_whole(Path(path)) as data:
         return _tables(data)
 
 
-def examine(path: str | Path) -> Description:
-    """A description: what is in a file, how it was made, how far it is, and its stated accuracy. Raises StoreError."""
-    path = Path(path)
+def description_of(path: Path) -> tuple[str, bool]:
+    """The lines about a file, and whether they say `damaged`: what is in it, how it was made, how far it is, and its
+    stated accuracy. Raises StoreError."""
     with open_file(path) as data:
         try:
             return _examined(data, path)
@@ -51,7 +43,7 @@ def examine(path: str | Path) -> Description:
             raise StoreError(f"{path} is damaged ({error})") from None
 
 
-def _examined(data: xarray.Dataset, path: Path) -> Description:
+def _examined(data: xarray.Dataset, path: Path) -> tuple[str, bool]:
     lines = [f"{path}: {data.attrs['title']}"]
     sealed, lost = data.encoding["sealed"], damage(data)
     checked = f"damaged      {lost}; {REMEDY}" if lost else "checksums    all hold"
@@ -61,7 +53,7 @@ def _examined(data: xarray.Dataset, path: Path) -> Description:
     made_by += _record(data.attrs["provenance"], data.attrs["history"])
     if data.attrs["kind"] != SWEEP:
         ragged_dataset.check(data)
-        return Description("\n".join([*lines, *_tables(data), checked, *made_by]), False)
+        return "\n".join([*lines, *_tables(data), checked, *made_by]), False
     sweep = Sweep(data, str(path))
     for name in sweep.keys:
         axis = sweep.values(name)
@@ -75,7 +67,7 @@ def _examined(data: xarray.Dataset, path: Path) -> Description:
         lines.append("unfinished   its last line is missing; `--resume` completes it")
     if not lost:
         lines += [*_untouched(sweep), *_turning(sweep), *_exponents(sweep), *_accuracy(sweep)]
-    return Description("\n".join([*lines, *made_by]), bool(lost))
+    return "\n".join([*lines, *made_by]), bool(lost)
 
 
 def _in_order(sweep: Sweep) -> list[str]:

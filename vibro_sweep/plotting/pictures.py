@@ -6,11 +6,12 @@ Such a picture is drawn anew without a question. Everything else that exists is 
 import contextlib
 import hashlib
 import io
+import logging
 import os
 import re
 import secrets
 import zlib
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 from pathlib import Path
 
 import matplotlib
@@ -23,11 +24,12 @@ from vibro_sweep.plotting.film import SUFFIXES as FILMS
 from vibro_sweep.plotting.film import Film
 from vibro_sweep.plotting.style import STYLE
 
-SUFFIXES = (".png", ".svg", ".pdf")  # FILMS have more
+SUFFIXES = (".png", ".jpg", ".svg", ".pdf", ".eps")  # FILMS have more
 MOST = 2**28  # bytes of a picture that is looked at
 
 _DIGEST = re.compile(rb"sha256:([0-9a-f]{64})")
 _END = 12  # bytes of the last chunk of a PNG file, which the seal comes before
+_BEGIN = 2  # bytes of a JPEG file before its first segment
 
 
 def save(fig: Figure, output: Path, overwrite: bool, inputs: Collection[Path]) -> Path:
@@ -59,12 +61,24 @@ def _encoded(fig: Figure, suffix: str) -> bytes:
         return fig.encoded(suffix)
     picture = io.BytesIO()
     try:
-        fig.savefig(picture, format=suffix[1:], dpi=fig.dpi)
+        with _quiet_logger("matplotlib.backends.backend_ps"):  # it says that EPS has no transparency
+            fig.savefig(picture, format=suffix[1:], dpi=fig.dpi)
     except RuntimeError as error:
         if not matplotlib.rcParams["text.usetex"]:
             raise
         raise PlotError(f"matplotlib is set up to write with LaTeX (text.usetex), which fails: {error}") from None
     return picture.getvalue()
+
+
+@contextlib.contextmanager
+def _quiet_logger(name: str) -> Iterator[None]:
+    logger = logging.getLogger(name)
+    before = logger.level
+    logger.setLevel(logging.ERROR)
+    try:
+        yield
+    finally:
+        logger.setLevel(before)
 
 
 def check_output(output: Path, overwrite: bool, inputs: Collection[Path]) -> None:
@@ -98,7 +112,7 @@ def unchanged(path: Path) -> bool:
 
 def _sealed(picture: bytes, suffix: str) -> bytes:
     """A picture with its seal, which is a comment in its format."""
-    end = len(picture) - _END if suffix == ".png" else len(picture)
+    end = len(picture) - _END if suffix == ".png" else _BEGIN if suffix == ".jpg" else len(picture)
     seal = _seal(hashlib.sha256(picture).hexdigest().encode(), suffix)
     return picture[:end] + seal + picture[end:]
 
@@ -107,6 +121,9 @@ def _seal(digest: bytes, suffix: str) -> bytes:
     if suffix == ".png":
         chunk = b"tEXtvibro_sweep\0sha256:" + digest
         return (len(chunk) - 4).to_bytes(4) + chunk + zlib.crc32(chunk).to_bytes(4)
+    if suffix == ".jpg":  # a segment with a comment
+        text = b"vibro_sweep sha256:" + digest
+        return b"\xff\xfe" + (len(text) + 2).to_bytes(2) + text
     if suffix == ".mp4":  # a box that players skip
         box = b"free vibro_sweep sha256:" + digest
         return (len(box) + 4).to_bytes(4) + box

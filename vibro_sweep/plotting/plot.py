@@ -84,7 +84,7 @@ def plot(
     windows : windows of the sweep, to be shown with it
     over : the sweep over which branches or curves are drawn
     relative : of curves and planes: b in parts of the grazing clearance b*
-    output : FILE.png, .svg or .pdf, to which the picture is written as well; .gif or .mp4 of a film
+    output : FILE.png, .jpg, .svg, .pdf or .eps, to which the picture is written as well; .gif or .mp4 of a film
     overwrite : replace an `output` that exists, also one that is not a picture of this program
 
     Raises `PlotError` where the data cannot be read or cannot show that kind; it says which can be shown.
