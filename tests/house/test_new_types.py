@@ -75,19 +75,19 @@ special += [vibro_sweep.plotting.kinds(data)[-1], "periods" in str(json_schema()
 )
 PERIODS = '''"""The periods of orbits over a parameter."""
 
+from vibro_sweep.plotting.drawn_sweep import DrawnSweep
 from vibro_sweep.plotting.figure import Panels
 from vibro_sweep.plotting.kind import picture
 from vibro_sweep.plotting.labels import legend_below
-from vibro_sweep.plotting.drawn_sweep import Result
 
 
-def shows(result: Result) -> bool:
+def shows(result: DrawnSweep) -> bool:
     """A sweep over one key; section."""
     return len(result.sweep) == 1 and "period" in result
 
 
 @picture(shows)
-def periods(result: Result) -> Panels:
+def periods(result: DrawnSweep) -> Panels:
     """The period of each orbit."""
     ((key, values),) = result.sweep.items()
 
