@@ -18,10 +18,13 @@ ORBITS = {
     "chain": (CHAIN.replace(b=0.2), "LR", 1),
     "one mass": (ONE_MASS, "R", 2),
     "a free mode": (CAVITY, "LR", 1),
+    "rests": (family_of(PAPER.replace(R=0, b=0.3)), "LR", 1),
+    "rests, tau": (family_of(PAPER.replace(R=0, b=0.3, tau=0.3)), "LR", 1),
 }
 CASES = [(one, name) for one, (family, *_) in ORBITS.items() for name, x in family.numbers.items() if type(x) is float]
-FAST = [case for case in CASES if case[0] != "chain"]  # whose kernels of branches no other fast test needs
-SLOW = [case for case in CASES if case[0] == "chain"]
+CASES = [case for case in CASES if "rests" not in case[0] or case[1] != "R"]  # another R leads to no rest at once
+SLOW = [case for case in CASES if case[0] in ("chain", "rests", "rests, tau")]  # whose kernels no other fast test needs
+FAST = [case for case in CASES if case not in SLOW]
 
 
 @pytest.mark.parametrize(("one", "name"), [*FAST, *slow_cases(*SLOW)])
@@ -33,8 +36,9 @@ def test_slopes_are_those_of_differences(one, name):
         value -= h
         s = replace(s, family=family.replace(R=value)).corrected()
     sides = [replace(s, family=family.replace(**{name: value + d})).corrected() for d in (h, -h)]
-    difference = ((sides[0].u - sides[1].u) / (2 * h))[: 2 * s.K]
     found = Linearised(s, s.family.derivative(name)).slopes()
+    assert len(found) == 2 * s.K + len(s.rests) and bool(s.rests) == ("rests" in one)
+    difference = ((sides[0].u - sides[1].u) / (2 * h))[: len(found)]
     assert found == pytest.approx(difference, rel=1e-5, abs=1e-7 * max(1, np.abs(difference).max()))
 
 
