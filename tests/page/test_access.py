@@ -132,7 +132,7 @@ def test_a_second_page_takes_over_and_the_first_is_told(program, page, view):
         with pytest.raises(ConnectionClosed) as closed:
             for _ in range(100_000):
                 page.recv(timeout=10)
-        assert closed.value.rcvd.code == 4000 and "another tab" in closed.value.rcvd.reason
+        assert closed.value.rcvd.code == 4000 and "Another tab" in closed.value.rcvd.reason
         assert answers(second, "open", 2)[0]["type"] == "model"
 
 

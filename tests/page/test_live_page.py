@@ -146,10 +146,10 @@ def test_the_address_holds_the_view(page, browser, program):
     other.wait_for_timeout(300)
     assert other.input_value("#field-omega") == "0.7"
     assert colours(other) == colours(page)
-    page.locator("#status", has_text="another tab or window shows this page now. Reload this one").wait_for()
+    page.locator("#status", has_text="Another tab or window shows this page now. Reload this one").wait_for()
     page.reload()
     settle(page)
-    other.locator("#status", has_text="another tab").wait_for()
+    other.locator("#status", has_text="Another tab").wait_for()
     other.close()
 
 

@@ -107,7 +107,7 @@ class Explorer:
             while True:
                 message = await answers.get()
                 if message is None:
-                    await ws.close(TAKEN_OVER, "another tab or window shows this page now")
+                    await ws.close(TAKEN_OVER, "Another tab or window shows this page now")
                     return
                 sending = ws.send_text(message) if isinstance(message, str) else ws.send_bytes(message)
                 await asyncio.wait_for(sending, SLOWEST)
