@@ -333,7 +333,9 @@ def commands() -> Iterator[str]:
     )
     for name, command in typer.main.get_command(app).commands.items():
         yield f"## `vibro-sweep {name}`\n"
-        usage = " ".join(one.metavar for one in command.params if one.param_type_name == "argument")
+        usage = " ".join(
+            one.metavar + "..." * (one.nargs == -1) for one in command.params if one.param_type_name == "argument"
+        )
         yield f"```text\nvibro-sweep {name} [OPTIONS] {usage}".rstrip() + "\n```\n"
         yield inspect.cleandoc(command.help) + "\n"
         rows = [(_option(one), one.help) for one in command.params if one.param_type_name == "option"]
