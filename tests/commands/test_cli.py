@@ -6,11 +6,13 @@ import re
 import shutil
 import subprocess
 import sys
+from pathlib import Path
 from types import SimpleNamespace
 
 import h5py
 import numpy as np
 import pytest
+import xarray as xr
 from support import ROOT
 from support.cli import NUMBERS, assert_refused, scene
 from support.contents import bytes_in
@@ -149,9 +151,14 @@ def test_several_files(scene_folder, capsys):
     assert main(["plot", "good.h5", "good.h5", "-o", "x.png"]) == 2
     assert "--output names one picture" in capsys.readouterr().err
     shutil.copy("good.h5", "again.h5")
-    assert main(["plot", "good.h5", "again.h5"]) == 0
-    assert capsys.readouterr().out.split() == ["good.png", "again.png"]
-    assert (scene_folder / "again.png").exists()
+    assert main(["plot", "good.h5", "other.h5", "again.h5"]) == 2
+    captured = capsys.readouterr()
+    assert captured.out.split() == ["good.png", "again.png"] and "other.h5" in captured.err
+    assert (scene_folder / "again.png").exists() and not (scene_folder / "other.png").exists()
+    Path("folder").mkdir()
+    shutil.copy("good.h5", "folder/good.h5")
+    assert main(["plot", "good.h5", "folder/good.h5"]) == 2
+    assert "good.h5 and folder/good.h5 would both be drawn into good.png" in capsys.readouterr().err
 
 
 @pytest.mark.slow
@@ -162,13 +169,25 @@ def test_windows_and_branches_as_json(scene_folder, capsys):
     assert main(["windows", "range.h5", "--json"]) == 0
     (line,) = capsys.readouterr().out.splitlines()
     windows = vs.load("range.windows.h5")
-    table = json.loads(line)["table"]
-    assert [(row["lo"], row["hi"], row["upper"]) for row in table] == [(w.lo, w.hi, w.upper.type) for w in windows]
+    tables = json.loads(line)["tables"]
+    specials = [row["type"] for row in tables["special"]]
+    found = [(row["lo"], row["hi"], specials[row["upper"]], row["period"]) for row in tables["window"]]
+    assert sorted(found) == sorted((w.lo, w.hi, w.upper.type, w.period) for w in windows)
     branch = vs.continue_orbit(vs.periodic_orbit(system, itinerary="R"), "b", (4, 7))
     branch.save("branch.h5")
     assert main(["info", "branch.h5", "--json"]) == 0
     known = json.loads(capsys.readouterr().out)
-    assert known["kind"] == "branches" and len(known["table"]) == len(branch.special)
+    assert known["kind"] == "branches" and known["sealed"] is True
+    table = known["tables"]["special"]
+    assert [row["type"] for row in table] == [point.type for point in branch.special]
+    assert [row["value_b"] for row in table] == [point.parameters["b"] for point in branch.special]
+    with xr.open_dataset("branch.h5", engine="h5netcdf", decode_times=False) as data:
+        data.assign_attrs(provenance="by hand", odd=np.nan).to_netcdf("copy.h5", engine="h5netcdf")
+    assert main(["info", "copy.h5", "missing.h5", "branch.h5", "--json"]) == 2
+    assert main(["info", "copy.h5", "branch.h5", "--json"]) == 0
+    copy, again = map(json.loads, capsys.readouterr().out.splitlines())
+    assert (copy["sealed"], copy["made_by"], copy["attributes"]["odd"]) == (False, "by hand", None)
+    assert copy["tables"] == again["tables"] == known["tables"]
 
 
 def test_existing_file_is_kept_unless_told(scene_folder, capsys):

@@ -122,6 +122,10 @@ def test_a_page_that_does_not_read_costs_the_next_one_nothing(program, page, vie
             began = time.perf_counter()
             answers(other, "sweep", 3, view=view)
             assert time.perf_counter() - began < 2
+            with pytest.raises(ConnectionClosed) as closed:  # it is told all the same, once it reads
+                for _ in range(10_000):
+                    silent.recv(timeout=10)
+            assert closed.value.rcvd.code == 4000
 
 
 def test_a_second_page_takes_over_and_the_first_is_told(program, page, view):

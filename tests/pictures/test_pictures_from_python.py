@@ -1,11 +1,12 @@
 """Pictures of Datasets are those of their files, also in axes of the caller."""
 
+import h5py
 import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from support import slow_cases
-from support.figures import kinds
+from support.figures import chart, kinds
 
 import vibro_sweep as vs
 
@@ -64,3 +65,21 @@ def test_a_plane_in_the_axes_of_the_caller(variables):
     ax = Figure().subplots()
     assert vs.plot(data, ax=ax) is ax.figure
     assert np.array_equal(ax.images[0].get_array(), vs.plot(data).axes[0].images[0].get_array())
+
+
+def test_a_figure_that_is_drawn_is_the_callers(line):
+    """What is drawn into its axes afterwards has its legend in these, keeps their title, and the figure its size."""
+    fig = vs.plot(line, "lyapunov", width=85)
+    legends, size, title = list(fig.legends), fig.get_size_inches().tolist(), fig.axes[0].set_title("mine").get_text()
+    assert vs.plot(chart(("graze", np.array([[6.5, 6.55, 6.6], [0.0, -0.01, -0.02]]), 1)), ax=fig.axes[0]) is fig
+    assert fig.legends == legends and fig.get_size_inches().tolist() == size
+    assert fig.axes[0].get_legend() is not None and fig.axes[0].get_title() == title == "mine"
+
+
+def test_curves_over_a_plane_leave_its_file_alone(tmp_path):
+    plane = {"b": [6.5, 6.6], "omega": [0.62, 0.63]}
+    vs.sweep(SYSTEM, plane, output=tmp_path / "plane.h5", observe=["lyapunov", "impacts"], **SHORT)
+    figure = vs.plot(chart(("graze", np.array([*plane.values()]), 1)), over=tmp_path / "plane.h5")
+    assert figure.axes[0].images
+    with h5py.File(tmp_path / "plane.h5", "r+"):  # which fails while somebody reads it
+        pass

@@ -15,7 +15,15 @@ from vibro_sweep.results.sweep_dataset import Sweep
 from vibro_sweep.tables.file_columns import SWEEP
 from vibro_sweep.tables.outcomes import status_of
 
-APART = ("scene", "provenance", "history", "title", "kind")  # attributes that have a place of their own
+ELSEWHERE = (
+    "scene",
+    "provenance",
+    "history",
+    "title",
+    "kind",
+    "sweep_dimensions",
+)  # attributes with places of their own
+ROWS = ("window", "branch", "special", "unvisited", "edge")  # dimensions of which an object has a table
 
 
 def description_of(path: Path) -> tuple[str, bool]:
@@ -30,8 +38,8 @@ def description_of(path: Path) -> tuple[str, bool]:
 
 def _described(data: xarray.Dataset, path: Path) -> dict[str, Any]:
     known = {"file": str(path), "title": data.attrs["title"], "kind": data.attrs["kind"]}
-    known |= {"complete": data.encoding["complete"], "damaged": damage(data)}
-    known["attributes"] = {str(name): value for name, value in data.attrs.items() if name not in APART}
+    known |= {"complete": data.encoding["complete"], "sealed": data.encoding["sealed"], "damaged": damage(data)}
+    known["attributes"] = {str(name): value for name, value in data.attrs.items() if name not in ELSEWHERE}
     known["dimensions"] = dict(data.sizes)
     known["variables"] = {
         str(name): {"dimensions": variable.dims, **{key: variable.attrs.get(key) for key in ("units", "description")}}
@@ -42,28 +50,38 @@ def _described(data: xarray.Dataset, path: Path) -> dict[str, Any]:
         known["axes"] = {key: sweep.values(key) for key in sweep.keys}
         codes, counts = np.unique(sweep.values("status"), return_counts=True)
         known["statuses"] = {status_of(code).name: count for code, count in zip(codes, counts, strict=True)}
-    elif not known["damaged"]:
-        known["table"] = _table(path)
-    made_by = json.loads(data.attrs["provenance"])
-    return known | {"scene": data.attrs["scene"], "made_by": made_by, "history": data.attrs["history"].splitlines()}
+    else:
+        known["tables"] = {dimension: _rows(data, dimension) for dimension in ROWS if dimension in data.sizes}
+    history = str(data.attrs["history"]).splitlines()
+    return known | {"scene": data.attrs["scene"], "made_by": _made_by(data.attrs["provenance"]), "history": history}
 
 
-def _table(path: Path) -> list[dict[str, Any]]:
-    """Windows; or special points, each with the number of its branch or curve."""
-    from vibro_sweep.driver.loaded_results import load
+def _rows(data: xarray.Dataset, dimension: str) -> list[dict[str, Any]]:
+    """What the variables along a dimension say of each of its places: words for codes, parameters by name."""
+    columns = {}
+    for name, variable in data.variables.items():
+        key, values = str(name).removeprefix(f"{dimension}_"), variable.values
+        if "flag_meanings" in variable.attrs:
+            codes = np.atleast_1d(variable.attrs["flag_values"]).tolist()
+            words = dict(zip(codes, str(variable.attrs["flag_meanings"]).split(), strict=False))
+            values = np.array([words.get(code, code) for code in values.ravel().tolist()], object).reshape(values.shape)
+        if variable.dims == (dimension,):
+            columns[key] = values
+        elif variable.dims == (dimension, "parameter"):
+            names = np.atleast_1d(data.attrs["parameters"])
+            columns |= {f"{key}_{parameter}": values[:, i] for i, parameter in enumerate(names)}
+    return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
 
-    results = load(path)
-    if hasattr(results, "to_dataframe"):
-        return results.to_dataframe().to_dict("records")
-    return [
-        {"number": number} | row
-        for number, result in enumerate(results)
-        for row in result.to_dataframe().to_dict("records")
-    ]
+
+def _made_by(provenance: object) -> Any:
+    try:
+        return json.loads(str(provenance))
+    except ValueError:  # of a file that another program wrote
+        return str(provenance)
 
 
 def _plain(value: Any) -> Any:
-    """What JSON can hold; null where a number is not finite."""
+    """What JSON can hold; null where a number is not finite, and else words."""
     if isinstance(value, dict):
         return {str(key): _plain(entry) for key, entry in value.items()}
     if isinstance(value, (list, tuple)):
@@ -72,4 +90,6 @@ def _plain(value: Any) -> Any:
         return _plain(value.tolist())
     if isinstance(value, float):
         return value if math.isfinite(value) else None
-    return value
+    if isinstance(value, bytes):
+        return value.decode(errors="replace")
+    return value if value is None or isinstance(value, (str, int)) else str(value)

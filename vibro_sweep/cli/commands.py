@@ -18,6 +18,7 @@ from .console import (
     EXIT_STATUSES,
     InputError,
     all_is_imported,
+    each_of,
     ended,
     input_errors,
     messages,
@@ -206,10 +207,15 @@ def plot_command(
     for name, text in (("width", width), ("dpi", dpi)):
         options[name] = text and number_in(f"--{name}", text)
     options |= {"windows": windows, "over": over, "relative": relative}
+    from vibro_sweep.plotting import default_name
+
     if output is not None and len(files) > 1:
         raise InputError("--output names one picture; leave it out for several files: each is drawn into FILE.png")
+    drawn: dict[str, Path] = {}
     for file in files:
-        _draw(file, output, kind, overwrite, False, **options)
+        if (before := drawn.setdefault(default_name(file), file)) != file:
+            raise InputError(f"{before} and {file} would both be drawn into {default_name(file)}; name it by --output")
+    each_of(drawn.values(), lambda file: _draw(file, output, kind, overwrite, False, **options))
 
 
 @app.command()
@@ -225,14 +231,14 @@ def info(files: DataFiles, as_json: Json = False):
     else:
         from .info import description_of
 
-    any_damaged = False
-    for number, file in enumerate(files):
+    def describe(file: Path) -> None:
         with input_errors(StoreError):
             text, damaged = description_of(file)
-        say(f"\n{text}" if number and not as_json else text)
-        any_damaged |= damaged
-    if any_damaged:
-        raise typer.Exit(BAD_INPUT)
+        say(text if as_json or file is files[0] else f"\n{text}")
+        if damaged:
+            raise SystemExit(BAD_INPUT)
+
+    each_of(files, describe)
 
 
 @app.command()

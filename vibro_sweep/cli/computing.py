@@ -111,9 +111,12 @@ def compute_windows(computation: Computation, file: Path, parameter: str | None,
     with computation.under_way(ValueError) as (executor, progress):
         run_windows(file, computation.output, parameter, computation.workers, executor, progress, computation.mode)
     if as_json:
+        from vibro_sweep.files.file_errors import StoreError
+
         from .as_json import description_of
 
-        say(description_of(computation.output)[0])
+        with input_errors(StoreError):
+            say(description_of(computation.output)[0])
     elif not computation.quiet:
         say_tables(computation.output)
 

@@ -7,7 +7,8 @@ import os
 import re
 import sys
 import traceback
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
 
 from vibro_sweep.engine import simd
 from vibro_sweep.tables.outcomes import Outcome
@@ -94,6 +95,18 @@ def input_errors(*kinds: type[Exception]) -> Iterator[None]:
         if getattr(error, "internal", False):
             raise
         raise SystemExit(_refused(error)) from None
+
+
+def each_of(files: Iterable[Path], command: Callable[[Path], None]) -> None:
+    """Run a command of each file, also after one that it has refused; the last refusal's status is that of all."""
+    status = 0
+    for file in files:
+        try:
+            command(file)
+        except SystemExit as refusal:
+            status = refusal.code or status
+    if status:
+        raise SystemExit(status)
 
 
 def _refused(error: Exception) -> int:

@@ -27,8 +27,7 @@ class Answers:
 
     def __init__(self, presets: dict[str, Scene], first: str, pace: Pace):
         self._presets, self._first, self._pace = presets, first, pace
-        self._view: Any = None  # of the diagram that is complete
-        self._ends: np.ndarray | None = None  # (columns, starts, 2 N)
+        self._complete: tuple[Any, np.ndarray] | None = None  # view and ends, (columns, starts, 2 N), of the diagram
 
     def diagram(self, request: Sweep) -> Iterator[Message]:
         """The frames of a diagram."""
@@ -39,7 +38,7 @@ class Answers:
         ends = np.full((view.columns, scene.n_starts, 2 * system.masses), np.nan)
         shared = {"columns": view.columns, "starts": scene.n_starts, "middle": request.middle, "record": scene.record}
         shared |= _lines(scene)
-        self._view = None
+        self._complete = None
         for frame in frames(scene, variables=wanted, pace=self._pace):
             dots, arrays = _dots(frame, scene, view.y, request.middle)
             if frame.kind == "preview":
@@ -50,7 +49,7 @@ class Answers:
                     len(end), -1, end.shape[-1]
                 )
             if frame.last:
-                self._view, self._ends = view, ends
+                self._complete = view, ends
             yield binary_message("frame", request.seq, arrays | dots, **shared, **_place(frame))
 
     def click(self, request: ClickedOrbit | Open | Save) -> Message:
@@ -87,8 +86,8 @@ class Answers:
 
     def _settled(self, request: OfOneOrbit) -> tuple[Settled, bool]:
         """The orbit, and whether it goes on from the end of the one in the diagram."""
-        ends, column = self._ends, request.column
-        if self._view == request.view and ends is not None and 0 <= column < len(ends):
+        (view, ends), column = self._complete or (None, ()), request.column
+        if view == request.view and 0 <= column < len(ends):
             end = ends[column, min(request.start, ends.shape[1] - 1)]
             if np.isfinite(end).all():
                 return settled(request.view, request.value, request.start, end), True

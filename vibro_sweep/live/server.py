@@ -71,22 +71,29 @@ class Explorer:
 
     async def _talk(self, ws: WebSocket) -> None:
         """Read requests and send answers, until one of the two ends."""
-        loop, answers = asyncio.get_running_loop(), asyncio.Queue[Message | None]()
+        loop, answers, over = asyncio.get_running_loop(), asyncio.Queue[Message](), asyncio.Event()
 
         def put(message: Message | None) -> None:
             with contextlib.suppress(RuntimeError):  # the loop is closed
-                loop.call_soon_threadsafe(answers.put_nowait, message)
+                if message is None:
+                    loop.call_soon_threadsafe(over.set)
+                else:
+                    loop.call_soon_threadsafe(answers.put_nowait, message)
 
         visitor = Visitor(Answers(self._presets, self._first, self._pace), put)
         self._engine.welcome(visitor)
-        both = [asyncio.ensure_future(task) for task in (self._read(ws, visitor), self._write(ws, visitor, answers))]
+        talk = (self._read(ws, visitor), self._write(ws, visitor, answers), over.wait())
+        tasks = [asyncio.ensure_future(task) for task in talk]
         try:
-            await asyncio.wait(both, return_when=asyncio.FIRST_COMPLETED)
+            await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
         finally:
             self._engine.leave(visitor)
-            for task in both:
+            for task in tasks:
                 task.cancel()
-            await asyncio.gather(*both, return_exceptions=True)
+            await asyncio.gather(*tasks, return_exceptions=True)
+        if over.is_set():  # whatever is still on its way
+            with contextlib.suppress(RuntimeError, WebSocketDisconnect):  # it has left meanwhile
+                await ws.close(TAKEN_OVER, "Another tab or window shows this page now")
 
     async def _read(self, ws: WebSocket, visitor: Visitor) -> None:
         with contextlib.suppress(WebSocketDisconnect):
@@ -102,13 +109,10 @@ class Explorer:
                 self._engine.ask(visitor, request)
                 await asyncio.sleep(PAUSE)
 
-    async def _write(self, ws: WebSocket, visitor: Visitor, answers: "asyncio.Queue[Message | None]") -> None:
+    async def _write(self, ws: WebSocket, visitor: Visitor, answers: "asyncio.Queue[Message]") -> None:
         with contextlib.suppress(WebSocketDisconnect, TimeoutError):
             while True:
                 message = await answers.get()
-                if message is None:
-                    await ws.close(TAKEN_OVER, "Another tab or window shows this page now")
-                    return
                 sending = ws.send_text(message) if isinstance(message, str) else ws.send_bytes(message)
                 await asyncio.wait_for(sending, SLOWEST)
                 self._engine.sent(visitor)

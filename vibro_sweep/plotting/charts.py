@@ -1,5 +1,7 @@
 """Files of bifurcation curves as charts in two parameters: alone, or over the plane of a sweep."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -18,13 +20,17 @@ from vibro_sweep.tables.file_columns import CHART
 NAMED = 14  # points of codimension two that are named over a plane
 
 
-def chart(path: str | Path, options: PlotOptions) -> Panels:
-    """The chart of a file of curves, over a plane where the options name one. Raises PlotError."""
+@contextmanager
+def chart(path: str | Path, options: PlotOptions) -> Iterator[Panels]:
+    """The chart of a file of curves, over a plane where the options name one, which is read while it is drawn. Raises
+    PlotError."""
     file = RaggedFile(path, CHART)
     if not len(file["branch_type"]):
         raise PlotError(f"{file.name}: nothing to show, it has no curves")
     if options.over is not None:
-        return _over(file, options)
+        with DrawnSweep(sweep_below(options.over), options.replace(over=None)) as plane:
+            yield _over(file, plane, options)
+        return
     if options.variable is not None:
         raise PlotError(
             f"variable {shown(options.variable)} is not allowed; a chart has one where it lies over a plane"
@@ -32,7 +38,7 @@ def chart(path: str | Path, options: PlotOptions) -> Panels:
     names = file.parameters
     curves = drawn(file, names, options.relative)
     labels = [axis_label(name, options.relative, file.unit(name)) for name in names]
-    return chart_of(f"Bifurcation curves: {file.title}", 5.0, curves, names, labels, options)
+    yield chart_of(f"Bifurcation curves: {file.title}", 5.0, curves, names, labels, options)
 
 
 def drawn(file: RaggedFile, names: list[str], relative: bool = False) -> list[Drawn]:
@@ -59,22 +65,21 @@ def drawn(file: RaggedFile, names: list[str], relative: bool = False) -> list[Dr
     return result
 
 
-def _over(file: RaggedFile, options: PlotOptions) -> Panels:
+def _over(file: RaggedFile, result: DrawnSweep, options: PlotOptions) -> Panels:
     """Over the plane of a sweep in the same two numbers."""
-    with DrawnSweep(sweep_below(options.over), options.replace(over=None)) as result:
-        if sorted(result.sweep) != sorted(file.parameters) or not planes.shows(result):
-            raise PlotError(f"over: {result.path} is not a plane over {' and '.join(file.parameters)}")
-        if options.variable is not None and options.variable not in planes.variables(result):
-            variables = ", ".join(planes.variables(result))
-            raise PlotError(f"variable {shown(options.variable)} is not allowed; there are {variables}")
-        curves = drawn(file, list(result.sweep), options.relative)
+    if sorted(result.sweep) != sorted(file.parameters) or not planes.shows(result):
+        raise PlotError(f"over: {result.path} is not a plane over {' and '.join(file.parameters)}")
+    if options.variable is not None and options.variable not in planes.variables(result):
+        variables = ", ".join(planes.variables(result))
+        raise PlotError(f"variable {shown(options.variable)} is not allowed; there are {variables}")
+    curves = drawn(file, list(result.sweep), options.relative)
 
-        def over(panel):
-            frame = panel.get_xlim(), panel.get_ylim()
-            draw(panel, curves, halo=True)
-            panel.set(xlim=frame[0], ylim=frame[1])
+    def over(panel):
+        frame = panel.get_xlim(), panel.get_ylim()
+        draw(panel, curves, halo=True)
+        panel.set(xlim=frame[0], ylim=frame[1])
 
-        def named(panel):
-            return name_points(panel, curves, NAMED)
+    def named(panel):
+        return name_points(panel, curves, NAMED)
 
-        return planes.plane(result, planes.Overlay(over, lambda panel: handles(curves, frame_of(panel)), named))
+    return planes.plane(result, planes.Overlay(over, lambda panel: handles(curves, frame_of(panel)), named))

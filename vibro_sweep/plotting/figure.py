@@ -39,6 +39,7 @@ def style_of(width: float | None) -> dict:
 class Picture(Figure):
     """A figure that a notebook shows as the value of a cell, once: pyplot does not know it, and need not be loaded."""
 
+    being_drawn = False  # after that it is the caller's, as are its axes
     grows = True  # whether its height is ours to choose
     narrow = False  # whether it was asked for by a width at which panels do not stand side by side
 

@@ -128,7 +128,7 @@ def legend_below(axes, handles, most: int, grow: bool = False, **style) -> None:
     fig = ax.figure
     if not handles:
         return
-    if not isinstance(fig, Picture):  # the figure around them is not ours; a legend that they have stays
+    if not (isinstance(fig, Picture) and fig.being_drawn):  # the figure is the caller's; a legend that is there stays
         if old := ax.get_legend():
             ax.add_artist(old)
         ax.legend(handles=handles, **style | {"loc": "best", "frameon": True})

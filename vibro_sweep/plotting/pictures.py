@@ -29,7 +29,7 @@ MOST = 2**28  # bytes of a picture that is looked at
 
 _DIGEST = re.compile(rb"sha256:([0-9a-f]{64})")
 _END = 12  # bytes of the last chunk of a PNG file, which the seal comes before
-_BEGIN = 2  # bytes of a JPEG file before its first segment
+_BEGIN = 4  # bytes of a JPEG file before the length of its first segment, which the seal comes behind
 
 
 def save(fig: Figure, output: Path, overwrite: bool, inputs: Collection[Path]) -> Path:
@@ -112,7 +112,9 @@ def unchanged(path: Path) -> bool:
 
 def _sealed(picture: bytes, suffix: str) -> bytes:
     """A picture with its seal, which is a comment in its format."""
-    end = len(picture) - _END if suffix == ".png" else _BEGIN if suffix == ".jpg" else len(picture)
+    end = len(picture) - _END if suffix == ".png" else len(picture)
+    if suffix == ".jpg":
+        end = _BEGIN + int.from_bytes(picture[_BEGIN : _BEGIN + 2])
     seal = _seal(hashlib.sha256(picture).hexdigest().encode(), suffix)
     return picture[:end] + seal + picture[end:]
 

@@ -1,6 +1,7 @@
 """`vibro_sweep.plot`, and the pictures of the command line: which kinds there are, and which one is drawn."""
 
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import nullcontext
 from importlib import import_module
 from pathlib import Path
 from types import NoneType
@@ -171,8 +172,9 @@ def _figures(
     if holds is not None:
         _check_ragged(data, holds, kind, options)
         check([""])
-        panels = (charts.chart if holds == CHART else branch_diagram.branches)(data, options)
-        yield "", options.draw(panels, ax)[0].figure
+        chart = charts.chart(data, options) if holds == CHART else nullcontext(branch_diagram.branches(data, options))
+        with chart as panels:
+            yield "", options.draw(panels, ax)[0].figure
         return
     with DrawnSweep(data, options) as result, matplotlib.rc_context(options.style):
         chosen = _chosen(result, kind)

@@ -96,6 +96,7 @@ class PlotOptions:
                 axes = [ax]
             else:
                 figure = self._page(panels)
+                figure.being_drawn = True
                 if panels.figure is None:
                     grid = figure.subplots(panels.rows, panels.columns, squeeze=False, **panels.grid)
                     panels.draw(grid)
@@ -103,6 +104,7 @@ class PlotOptions:
                 else:
                     panels.draw(figure)
                 axes = [ax for ax in figure.axes if ax.get_label() != "<colorbar>"]
+                figure.being_drawn = figure.narrow = False
             for panel in axes:
                 if self.xlim:
                     panel.set_xlim(self.xlim)
@@ -119,7 +121,8 @@ class PlotOptions:
             raise PlotError(
                 f"ax: the picture has {count} panels; leave ax out, choose one orbit by at, or another kind"
             )
-        ax.set_title(panels.title, pad=16)  # above the legend, if that is above the axes
+        if not ax.get_title():
+            ax.set_title(panels.title, pad=16)  # above the legend, if that is above the axes
         return np.array([[ax]])
 
     def _page(self, panels: Panels) -> Picture:

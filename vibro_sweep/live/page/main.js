@@ -37,7 +37,7 @@ function begin() {
   else open({}, null);
 }
 
-let restored = null, clickTimer = null;
+let restored = null, clickTimer = null, takenOver = "";
 function open(what, found) {
   restored = found;
   say(model ? "Opening" : "Connected");
@@ -47,7 +47,12 @@ function open(what, found) {
 
 function closed(event, tries) {
   set("computing");
-  if (event.code === TAKEN_OVER) return say(`${event.reason}. Reload this one to go on here.`, true);
+  if (event.code === TAKEN_OVER) {
+    clearTimeout(timer);
+    clearTimeout(clickTimer);
+    takenOver = `${event.reason}. Reload this one to go on here.`;
+    return say("");
+  }
   if (event.code === 1008) return say(`The program refused a request: ${event.reason}`, true);
   if (tries > 0 || !model) say("The connection is lost. If the program still runs, this page connects again by itself; if it was started again, open the address that it has printed.", true);
 }
@@ -203,8 +208,8 @@ function set(value) {
 }
 
 function say(words, bad = false) {
-  $("status").textContent = words;
-  $("status").classList.toggle("bad", bad);
+  $("status").textContent = takenOver || words;
+  $("status").classList.toggle("bad", bad || takenOver !== "");
 }
 
 function options(select, list, value) {

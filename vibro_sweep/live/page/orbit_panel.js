@@ -61,7 +61,7 @@ export class OrbitPanel {
     this.section();
   }
 
-  // the orbit, if it has a motion: a mapping has none
+  // the orbit, if it has a motion: one of a mapping, or that has failed, has none
   get moving() {
     return this.orbit?.periods ? this.orbit : null;
   }
@@ -137,6 +137,7 @@ export class OrbitPanel {
 
   masses() {
     if (this.moving) drawMasses(this.canvases.masses, this.orbit, this.clock);
+    else prepare(this.canvases.masses);
   }
 }
 
