@@ -1,13 +1,14 @@
 """Whom `vibro-sweep explore` answers, what it refuses, and that nothing stops it."""
 
 import http.client
+import json
 import socket
 import time
 from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
-from support.explorers import answers, ask
+from support.explorers import answers, ask, requested
 
 pytest.importorskip("uvicorn")
 pytest.importorskip("websockets.sync.client")
@@ -95,12 +96,23 @@ def test_what_is_no_request_closes_the_socket(program, message, code):
 
 
 def test_sizes_are_bounded(program, view):
-    for key, value in {"columns": 10**6, "record": 10**9, "low": "x", "numbers": {"R": None}}.items():
+    for key, value in {"columns": 10**6, "record": 10**9, "low": "x", "start": {"x1": [0]}}.items():
         with program.socket() as socket:
             ask(socket, "sweep", 1, view=view | {key: value})
             with pytest.raises(ConnectionClosed) as closed:
                 socket.recv(timeout=10)
             assert closed.value.rcvd.code == 1008
+
+
+@pytest.mark.parametrize("key", ["continue", "trajectory", "observe", "section", "picture", "output"])
+def test_keys_of_scenes_that_name_files_or_take_long_are_refused(program, view, key):
+    asked = requested(view)
+    asked["scene"][key] = {"from": {"sweep": "/etc/passwd"}, "parameter": "b"} if key == "continue" else "x"
+    with program.socket() as socket:
+        socket.send(json.dumps({"type": "sweep", "seq": 1, "view": asked}))
+        with pytest.raises(ConnectionClosed) as closed:
+            socket.recv(timeout=10)
+        assert closed.value.rcvd.code == 1008 and key in closed.value.rcvd.reason
 
 
 def memory(program):

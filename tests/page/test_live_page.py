@@ -153,6 +153,24 @@ def test_the_address_holds_the_view(page, browser, program):
     other.close()
 
 
+def test_a_number_of_a_list(page, tmp_path):
+    page.select_option("#presets", "chain")
+    page.locator("#field-m2").wait_for()
+    page.wait_for_timeout(200)
+    settle(page)
+    before = colours(page)
+    page.fill("#field-m2", "1.3")
+    page.press("#field-m2", "Enter")
+    page.wait_for_timeout(200)
+    settle(page)
+    assert colours(page) != before and page.locator("#status.bad").count() == 0
+    page.click("#save summary")
+    with page.expect_download() as download:
+        page.click("#save [data-form=yaml]")
+    download.value.save_as(tmp_path / "explored.yaml")
+    assert vs.load_scene(tmp_path / "explored.yaml").system.m == (1, 1.3, 1)
+
+
 def test_shift_and_drag_moves_the_view(page):
     box = page.locator("#diagram").bounding_box()
     page.keyboard.down("Shift")

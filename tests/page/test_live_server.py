@@ -78,7 +78,7 @@ def test_the_ends_of_a_window_are_where_its_orbit_ends(page, view):
 
 def test_a_newer_diagram_ends_the_following_of_a_window(page, view):
     """Nobody waits for what is no longer shown: of a window that is followed there comes nothing then."""
-    page.send(json.dumps({"type": "window", "seq": 2, "view": view, "value": 4.9}))
+    ask(page, "window", 2, view=view, value=4.9)
     words, _ = answers(page, "sweep", 3, view=view)[-1]
     assert words["last"] and words["seq"] == 3
     words, _ = answers(page, "window", 4, view=view | {"transient": 4000, "record": 200}, value=4.9)

@@ -64,7 +64,34 @@ def decoded(message):
     return words, arrays
 
 
+def requested(view):
+    """A view, in which every number has a place of its own, as a request has it: a scene, and what stands on the
+    vertical axis. As `requestOf` of page/scene.js."""
+    view = {"dynamics": "flow", "order": 1, "expand_at": None, "numbers": {}, "start": {}, "y": "x1"} | view
+    system = dict(view["system"])
+    for name, value in view["numbers"].items():
+        letters = name.rstrip("0123456789")
+        if isinstance(system.get(letters), list):
+            system[letters] = [value if f"{letters}{i}" == name else x for i, x in enumerate(system[letters], 1)]
+        else:
+            system[name] = value
+    sweep = {view["axis"]: {"start": view["low"], "stop": view["high"], "num": view["columns"]}}
+    scene = {"system": system, "sweep": sweep, "start": view["start"]}
+    scene["orbit"] = {name: view[name] for name in ("transient", "record")}
+    scene |= {name: view[name] for name in ("dynamics", "order", "expand_at")}
+    return {"scene": scene, "y": view["y"]}
+
+
+def flat(view):
+    """The same the other way round."""
+    scene = dict(view["scene"])
+    ((axis, ends),) = scene.pop("sweep").items()
+    places = {"axis": axis, "low": ends["start"], "high": ends["stop"], "columns": ends["num"]}
+    return scene.pop("orbit") | scene | places | {"numbers": {}, "y": view["y"]}
+
+
 def ask(socket, kind, seq, **values):
+    values |= {"view": requested(values["view"])} if "view" in values else {}
     socket.send(json.dumps({"type": kind, "seq": seq, **values}))
 
 
@@ -76,6 +103,8 @@ def answers(socket, kind, seq, **values):
         words, arrays = decoded(socket.recv(timeout=SECONDS))
         if words["seq"] != seq:
             continue
+        if words["type"] == "model":
+            words["view"] = flat(words["view"])
         found.append((words, arrays))
         if words["type"] != "frame":
             return found[0]

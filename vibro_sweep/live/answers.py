@@ -12,7 +12,7 @@ from vibro_sweep.live.messages import binary_message, number, text_message
 from vibro_sweep.live.model_words import model_words
 from vibro_sweep.live.pace import Pace
 from vibro_sweep.live.requests import ClickedOrbit, OfOneOrbit, Open, Save, Sweep, WindowEnds
-from vibro_sweep.live.views import base_of, height_of, needed, scene_of_view, view_of
+from vibro_sweep.live.views import height_of, needed, scene_of_view, view_of
 from vibro_sweep.live.window_ends import window_message
 from vibro_sweep.oscillator.grazing import grazing
 from vibro_sweep.scene import Scene
@@ -35,8 +35,8 @@ class Answers:
         system = scene.system
         wanted = [*needed(system, view.y), "period", *EXPONENTS, "end"]
         values = next(iter(scene.sweep.values()))
-        ends = np.full((view.columns, scene.n_starts, 2 * system.masses), np.nan)
-        shared = {"columns": view.columns, "starts": scene.n_starts, "middle": request.middle, "record": scene.record}
+        ends = np.full((len(values), scene.n_starts, 2 * system.masses), np.nan)
+        shared = {"columns": len(values), "starts": scene.n_starts, "middle": request.middle, "record": scene.record}
         shared |= _lines(scene)
         self._complete = None
         for frame in frames(scene, variables=wanted, pace=self._pace):
@@ -78,7 +78,7 @@ class Answers:
             raise ArgumentError(f"there is no scene {name!r}")
         view = view_of(self._presets[name]) if name else request.view
         words = {"view": view.model_dump(), "name": name, "presets": [*self._presets]}
-        return text_message("model", request.seq, **words, **model_words(base_of(view), view))
+        return text_message("model", request.seq, **words, **model_words(scene_of_view(view), view))
 
     def saved(self, request: Save) -> Message:
         """A view as a scene."""

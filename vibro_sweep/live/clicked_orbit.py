@@ -38,10 +38,7 @@ class Settled(NamedTuple):
 
 def settled(view: View, value: float, start: int, end: np.ndarray | None) -> Settled:
     """The orbit at a value of the swept number; end: where its orbit in the diagram has ended, to go on from there."""
-    scene = replace(
-        scene_of_view(view.model_copy(update={"columns": 2, "y": "x1"})),
-        section=Section(),
-    )
+    scene = replace(scene_of_view(view), section=Section())
     system = scene.system.replace(**{view.axis: value})
     if end is not None:
         of_one_orbit = scene.replace(system=system, sweep=None, start=end, transient=_lead(system))

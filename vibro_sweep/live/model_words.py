@@ -34,7 +34,7 @@ def model_words(scene: Scene, view: View) -> dict[str, Any]:
     system = scene.system
     stops = system.options.get("stops", "both")
     numbers = [
-        _slider(quantity, value, view, stops)
+        _slider(quantity, value, view, stops, system.numbers[name] is None)
         for name, quantity in system.described.items()
         if isinstance(value := _value(system, view, quantity), (int, float))
         and not (name.endswith("_left") and stops != "both")
@@ -55,7 +55,9 @@ def model_words(scene: Scene, view: View) -> dict[str, Any]:
 
 def _value(system: Oscillator, view: View, quantity: Parameter) -> Any:
     """What a number is; of one that is left out what it follows, or what a compliant stop has without it."""
-    numbers_now = {**system.numbers, **view.numbers}
+    numbers_now = system.numbers
+    if quantity.name == view.axis and isinstance(value := view.scene.system.get(quantity.name), (int, float)):
+        return value  # and not the first one of the sweep
     for side in ("right", "left"):
         if quantity.name in COMPLIANT.names[side] and (stop := stop_of(numbers_now, side)).law is COMPLIANT:
             return stop.number(quantity.name.removesuffix("_left"), 0.0)
@@ -63,8 +65,9 @@ def _value(system: Oscillator, view: View, quantity: Parameter) -> Any:
     return numbers_now[quantity.follows] if quantity.follows and value is None else value
 
 
-def _slider(quantity: Parameter, value: float, view: View, stops: str) -> dict[str, Any]:
-    """A number and the range of its slider: where its values can be at all, around the one that it has."""
+def _slider(quantity: Parameter, value: float, view: View, stops: str, left_out: bool) -> dict[str, Any]:
+    """A number and the range of its slider: where its values can be at all, around the one that it has; left out, it
+    follows another one."""
     allowed = range_of(quantity, stops)
     logarithmic = allowed.bounds == POSITIVE.bounds or (quantity.name in STIFFNESSES and value > 0)
     bounds = allowed.bounds
@@ -77,12 +80,11 @@ def _slider(quantity: Parameter, value: float, view: View, stops: str) -> dict[s
     else:
         low, high = value - max(1.0, 2 * abs(value)), value + max(1.0, 2 * abs(value))
     if quantity.name == view.axis:
-        low, high, logarithmic = view.low, view.high, False
+        low, high, logarithmic = *view.ends, False
     words = {"name": quantity.name, "symbol": _plain(quantity.symbol), "label": quantity.label}
     words |= {"text": quantity.text, "value": value}
     low, high = max(low, -LARGEST), min(high, LARGEST)
-    leader = quantity.follows if view.system.get(quantity.name) is None else ""
-    words |= {"leader": leader, "follows": bool(leader) and quantity.name not in view.numbers}
+    words |= {"leader": quantity.follows, "follows": bool(quantity.follows) and left_out}
     return words | {"low": low, "high": high, "log": logarithmic, "allowed": (allowed or NUMBER).text}
 
 

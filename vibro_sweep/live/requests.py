@@ -23,38 +23,63 @@ class _Checked(BaseModel):
     model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
 
 
-class View(_Checked):
-    """What a diagram shows.
+class Axis(_Checked):
+    """The swept number, evenly."""
 
-    system, dynamics, order, expand_at : as in the YAML of a scene, with a value for each number of the system
-    numbers : of the system, those that are others now
-    start : as in the YAML of a scene
-    y : a coordinate, `gap`, or `speed_right` or `speed_left`, at which the mass meets a stop
-    """
+    start: float
+    stop: float
+    num: int = Field(ge=2, le=4000)
+
+
+class Orbit(_Checked):
+    """Forcing periods."""
+
+    transient: int = Field(ge=0, le=10**6)
+    record: int = Field(ge=1, le=10**4)
+
+
+class SceneAsked(_Checked):
+    """A scene of one number of an oscillator, or of its mapping, as in YAML. Only these keys are allowed: others name
+    files, or take long."""
 
     system: dict[Name, Any] = Field(max_length=40)
     dynamics: Literal["flow", "map"] = "flow"
     order: Literal[1, 2] = 1
     expand_at: float | None = None
-    numbers: dict[Name, float] = Field(default={}, max_length=300)
-    axis: Name
-    low: float
-    high: float
-    columns: int = Field(default=1000, ge=2, le=4000)
+    sweep: dict[Name, Axis] = Field(min_length=1, max_length=1)
     start: dict[Name, str | int | float] = Field(default={}, max_length=40)
-    transient: int = Field(default=1000, ge=0, le=10**6)
-    record: int = Field(default=200, ge=1, le=10**4)
-    y: Name = "x1"
+    orbit: Orbit
 
     @model_validator(mode="after")
-    def _is_small(self) -> "View":
+    def _is_small(self) -> "SceneAsked":
         starts = self.start.get("random", 1)
-        orbits = self.columns * (starts if isinstance(starts, int) else 1)
-        if orbits * self.record > MOST_DOTS:
+        orbits = next(iter(self.sweep.values())).num * (starts if isinstance(starts, int) else 1)
+        if orbits * self.orbit.record > MOST_DOTS:
             raise ValueError(f"at most {MOST_DOTS:.0e} section points: fewer columns, starts or recorded periods")
-        if orbits * (self.record + self.transient) > MOST_PERIODS:
+        if orbits * (self.orbit.record + self.orbit.transient) > MOST_PERIODS:
             raise ValueError(f"at most {MOST_PERIODS:.0e} periods: fewer columns, starts or periods")
         return self
+
+
+class View(_Checked):
+    """What a diagram shows.
+
+    y : a coordinate, `gap`, or `speed_right` or `speed_left`, at which the mass meets a stop
+    """
+
+    scene: SceneAsked
+    y: Name = "x1"
+
+    @property
+    def axis(self) -> str:
+        """The swept number."""
+        return next(iter(self.scene.sweep))
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """From where to where it is swept."""
+        axis = self.scene.sweep[self.axis]
+        return axis.start, axis.stop
 
 
 class _Request(_Checked):

@@ -1,13 +1,11 @@
 """From a view of the page to the scene that computes it, and from scenes to views."""
 
 import json
-from collections import OrderedDict
-from typing import Any
 
 import numpy as np
 
 from vibro_sweep.checks.errors import ArgumentError
-from vibro_sweep.live.requests import View
+from vibro_sweep.live.requests import SceneAsked, View
 from vibro_sweep.oscillator.oscillator import Oscillator
 from vibro_sweep.scene import Scene, scene_of
 from vibro_sweep.scene.written import system_data
@@ -15,44 +13,17 @@ from vibro_sweep.tables.coordinates import state
 
 SPEEDS = {"speed_right": "right", "speed_left": "left"}
 OBSERVE = ("section", "lyapunov")
-KEPT = 8  # systems
 COLUMNS = 1000
 MOST_RECORDED, LONGEST_TRANSIENT = 400, 2000  # of a scene that is opened; the page can ask for more
 
-_bases: OrderedDict[str, Scene] = OrderedDict()
-
-
-def base_of(view: View) -> Scene:
-    """The scene of one orbit of a view's system, or of its mapping, without the numbers that were changed. Raises
-    SceneError."""
-    data: dict[str, Any] = {"system": view.system, "observe": [*OBSERVE]}
-    if view.dynamics == "map":
-        data |= {"dynamics": "map", "order": view.order}
-        data |= {} if view.expand_at is None else {"expand_at": view.expand_at}
-    key = json.dumps(data, sort_keys=True)
-    if key not in _bases:
-        _bases[key] = scene_of(data | {"orbit": {"transient": 1000, "record": 200}}, "view")
-        while len(_bases) > KEPT:
-            _bases.popitem(last=False)
-    return _bases[key]
-
-
-def system_of(view: View) -> Oscillator:
-    """The oscillator of a view. Raises SceneError, ParameterError."""
-    return base_of(view).system.replace(**view.numbers)
-
 
 def scene_of_view(view: View) -> Scene:
-    """The scene of a sweep that a view shows. Raises SceneError, ParameterError, ArgumentError."""
+    """The scene of a sweep that a view shows. Raises SceneError, ArgumentError."""
+    data = view.scene.model_dump(exclude_defaults=True)
+    if view.scene.dynamics == "map":
+        data["order"] = view.scene.order
     section = {"kind": "impact", "stop": SPEEDS[view.y]} if view.y in SPEEDS else {"kind": "phase"}
-    scene = base_of(view).replace(
-        system=system_of(view),
-        sweep={view.axis: {"start": view.low, "stop": view.high, "num": view.columns}},
-        start=view.start,
-        transient=view.transient,
-        record=view.record,
-        section=section,
-    )
+    scene = scene_of(data | {"observe": [*OBSERVE], "section": section}, "view")
     if view.y not in heights(scene):
         raise ArgumentError(f"y: must be one of {', '.join(heights(scene))}")
     return scene
@@ -95,20 +66,19 @@ def view_of(scene: Scene) -> View:
     start = scene.data().get("start", {}) if set(scene.sweep) == {axis} else {}
     if scene.start.kind == "random":
         start = start | {"random": min(scene.start.count, 4)}
-    return View(
-        system=json.loads(json.dumps(system)),
-        dynamics=scene.dynamics,
-        order=scene.order,
-        expand_at=scene.expand_at,
-        axis=axis,
-        low=low,
-        high=high,
-        columns=COLUMNS,
-        start=start,
-        transient=min(scene.transient, LONGEST_TRANSIENT),
-        record=min(scene.record, MOST_RECORDED),
-        y="speed_" + scene.section.stop if scene.section.kind == "impact" else "x1",
-    )
+    asked = {
+        "system": json.loads(json.dumps(system)),
+        "sweep": {axis: {"start": low, "stop": high, "num": COLUMNS}},
+        "start": start,
+        "orbit": {
+            "transient": min(scene.transient, LONGEST_TRANSIENT),
+            "record": min(scene.record, MOST_RECORDED),
+        },
+    }
+    if scene.dynamics == "map":
+        asked |= {"dynamics": "map", "order": scene.order, "expand_at": scene.expand_at}
+    y = "speed_" + scene.section.stop if scene.section.kind == "impact" else "x1"
+    return View(scene=SceneAsked(**asked), y=y)
 
 
 def span(value: float) -> tuple[float, float]:

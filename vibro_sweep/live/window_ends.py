@@ -84,11 +84,10 @@ def _not_periodic(settled_orbit: Settled) -> str:
 
 def _bounds(view: View, settled_orbit: Settled) -> tuple[float, float]:
     """What is looked at: the view, and as much again on both sides where the number may be there."""
-    width = view.high - view.low
+    (begin, end), width = view.ends, view.ends[1] - view.ends[0]
     allowed = range_of(settled_orbit.system.described[view.axis], settled_orbit.system.options.get("stops", "both"))
     low, high = (
-        wide if allowed.holds(np.array(wide)) else near
-        for wide, near in ((view.low - width, view.low), (view.high + width, view.high))
+        wide if allowed.holds(np.array(wide)) else near for wide, near in ((begin - width, begin), (end + width, end))
     )
     return float(low), float(high)
 

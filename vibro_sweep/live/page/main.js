@@ -7,6 +7,7 @@ import { Drawing } from "./drawing.js";
 import { Link, TAKEN_OVER } from "./link.js";
 import { OrbitPanel } from "./orbit_panel.js";
 import { copyLink, keep } from "./saving.js";
+import { requestOf, viewOf } from "./scene.js";
 import { steer } from "./steering.js";
 import { fromAddress, ViewState } from "./view_state.js";
 import { branchesOf, wordsOfWindow } from "./window_ends.js";
@@ -32,8 +33,8 @@ const link = new Link({ open: begin, answer, closed });
 function begin() {
   const found = fromAddress();
   if (state.view) {
-    open({ view: state.view }, { view: state.view, range: state.range, home: state.home, line });
-  } else if (found) open({ view: found.view }, found);
+    open({ view: requestOf(state.view) }, { view: state.view, range: state.range, home: state.home, line });
+  } else if (found) open({ view: requestOf(found.view) }, found);
   else open({}, null);
 }
 
@@ -63,7 +64,7 @@ function answer(message) {
 
 function opened(message) {
   model = message;
-  state.begin(message.view);
+  state.begin(viewOf(message.view));
   if (restored) {
     state.range = restored.range ?? null;
     state.home = restored.home ?? state.home;
@@ -86,7 +87,7 @@ function fill() {
   options($("presets"), ["", ...model.presets].map((name) => [name, name || "(this view)"]), model.name);
   options($("axis"), model.numbers.map((one) => [one.name, `${one.symbol}  ${one.label}`]), view.axis);
   options($("height"), model.heights, view.y);
-  $("dynamics").value = view.dynamics;
+  $("dynamics").value = view.map.dynamics ?? "flow";
   $("motion").hidden = !model.mapping;
   $("start").value = view.start.follow ?? (view.start.random ? "random" : "state");
   controls.build(model.numbers, view.axis);
@@ -108,7 +109,7 @@ function fields() {
 function request() {
   const { view } = state;
   failed = false;
-  asked = link.ask("sweep", { view, middle: state.range ? (state.range[0] + state.range[1]) / 2 : 0 });
+  asked = link.ask("sweep", { view: requestOf(view), middle: state.range ? (state.range[0] + state.range[1]) / 2 : 0 });
   computing();
   forgetWhy();
   state.write();
@@ -194,7 +195,7 @@ function saved(message) {
 
 function error(message) {
   clearTimeout(clickTimer);
-  if (message.of === "open" && model) $("dynamics").value = state.view.dynamics;
+  if (message.of === "open" && model) $("dynamics").value = state.view.map.dynamics ?? "flow";
   if (!["sweep", "open"].includes(message.of)) return say(message.text, true);
   if (message.of === "sweep" && message.seq !== asked) return;
   clearTimeout(timer);
@@ -292,7 +293,7 @@ function askOrbit() {
   if (line === null || !state.view) return;
   soon();
   const column = columnOfOrbit(), value = column >= 0 && data.axis ? data.axis[column] : line;
-  link.ask("orbit", { view: state.view, value, start, column });
+  link.ask("orbit", { view: requestOf(state.view), value, start, column });
 }
 
 const actions = {
@@ -347,7 +348,7 @@ const actions = {
     why = { reason: "its periodic orbit is being followed", value: line };
     showWhy();
     soon();
-    askedWhy = link.ask("window", { view: state.view, value: line, start, column: columnOfOrbit() });
+    askedWhy = link.ask("window", { view: requestOf(state.view), value: line, start, column: columnOfOrbit() });
   },
 };
 
@@ -375,7 +376,8 @@ $("height").addEventListener("change", (event) => {
   request();
 });
 $("dynamics").addEventListener("change", (event) => {
-  open({ view: { ...state.view, dynamics: event.target.value, y: "x1" } }, null);
+  const map = event.target.value === "map" ? { dynamics: "map", order: 1 } : {};
+  open({ view: requestOf({ ...state.view, map, y: "x1" }) }, null);
 });
 $("start").addEventListener("change", (event) => {
   const { follow, random, seed, ...rest } = state.view.start, value = event.target.value;
@@ -423,7 +425,7 @@ $("save").addEventListener("click", (event) => {
   $("save").open = false;
   if (form === "png") $("diagram").toBlob((picture) => keep(picture, "explored.png"));
   else if (form === "link") copyLink(state).then(say, () => say("The browser did not allow copying", true));
-  else link.ask("save", { view: state.view });
+  else link.ask("save", { view: requestOf(state.view) });
 });
 const later = () => {
   redraw();
