@@ -161,6 +161,19 @@ def test_several_files(scene_folder, capsys):
     assert "good.h5 and folder/good.h5 would both be drawn into good.png" in capsys.readouterr().err
 
 
+def test_ctrl_c_ends_several_files(scene_folder, capsys, monkeypatch):
+    assert main(["run", "good.yaml", "--quiet"]) == 0
+    shutil.copy("good.h5", "again.h5")
+    begun = []
+
+    def interrupted(path, *_, **options):
+        begun.append(path)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("vibro_sweep.plotting.write_pictures", interrupted)
+    assert main(["plot", "good.h5", "again.h5"]) == 130 and len(begun) == 1
+
+
 @pytest.mark.slow
 def test_windows_and_branches_as_json(scene_folder, capsys):
     system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=6.6)

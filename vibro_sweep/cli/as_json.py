@@ -15,14 +15,7 @@ from vibro_sweep.results.sweep_dataset import Sweep
 from vibro_sweep.tables.file_columns import SWEEP
 from vibro_sweep.tables.outcomes import status_of
 
-ELSEWHERE = (
-    "scene",
-    "provenance",
-    "history",
-    "title",
-    "kind",
-    "sweep_dimensions",
-)  # attributes with places of their own
+ELSEWHERE = ("scene", "provenance", "history", "title", "kind", "sweep_dimensions")  # which have keys of their own
 ROWS = ("window", "branch", "special", "unvisited", "edge")  # dimensions of which an object has a table
 
 

@@ -343,10 +343,10 @@ def explore_command(
 
 def _draw(file: Path, output: Path | None, kind: str | None, overwrite: bool, quiet: bool, **options):
     from vibro_sweep.files.file_errors import StoreError
-    from vibro_sweep.plotting import PlotError, pictures
+    from vibro_sweep.plotting import PlotError, write_pictures
 
     all_is_imported()
     with input_errors(PlotError, StoreError), interrupt.tidied_up(), messages(quiet):
-        written = pictures(file, output, kind, overwrite, **options)
+        written = write_pictures(file, output, kind, overwrite, **options)
     if not quiet:
         say("\n".join(str(picture) for picture in written))

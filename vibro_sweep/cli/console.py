@@ -98,15 +98,17 @@ def input_errors(*kinds: type[Exception]) -> Iterator[None]:
 
 
 def each_of(files: Iterable[Path], command: Callable[[Path], None]) -> None:
-    """Run a command of each file, also after one that it has refused; the last refusal's status is that of all."""
-    status = 0
+    """Run a command of each file, also after one that it has refused, which is the status of all then."""
+    refused = False
     for file in files:
         try:
             command(file)
-        except SystemExit as refusal:
-            status = refusal.code or status
-    if status:
-        raise SystemExit(status)
+        except SystemExit as end:
+            if end.code != BAD_INPUT:  # as after Ctrl-C
+                raise
+            refused = True
+    if refused:
+        raise SystemExit(BAD_INPUT)
 
 
 def _refused(error: Exception) -> int:

@@ -131,7 +131,7 @@ def kinds(data: "str | Path | xarray.Dataset") -> list[str]:
         return _kinds(result)
 
 
-def pictures(
+def write_pictures(
     path: Path, output: Path | None = None, kind: str | None = None, overwrite: bool = False, **options: Any
 ) -> list[Path]:
     """Write pictures of a file, with the options of `plot`; the paths written.

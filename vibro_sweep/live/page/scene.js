@@ -2,7 +2,7 @@
 
 export const requestOf = (view) => ({ scene: sceneOf(view), y: view.y });
 
-function sceneOf({ axis, low, high, columns, start, transient, record, system, numbers, map }) {
+function sceneOf({ axis, low, high, columns, start, transient, record, system, numbers = {}, map }) {
   const whole = structuredClone(system);
   for (const [name, value] of Object.entries(numbers)) {
     const [, list, at] = /^(.*?)(\d+)$/.exec(name) ?? [];
