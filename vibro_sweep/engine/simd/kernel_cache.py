@@ -25,6 +25,14 @@ SHARED = "bifurcations.py", "exponents.py", "outcomes.py"  # of the tables: cons
 WORTH_SAYING = 1.0  # seconds
 PAUSE = 0.1  # seconds between two looks whether another process has compiled a kernel
 PATIENCE = 600.0  # seconds of such a wait
+PURPOSES = {  # of kernels that take long: what for, and seconds of processor time
+    "run_points": ("orbits of sweeps, one kernel for each number of masses and kind of stops", 15),
+    "run_trajectories": ("trajectories", 8),
+    "run_energy": ("energies", 10),
+    "at": ("branches and curves", 12),
+    "differentiate": ("derivatives by parameters", 8),
+    "find_contacts": ("flights of periodic orbits", 4),
+}
 _log = logging.getLogger("vibro_sweep")
 _said: set[str] = set()
 slower = ""  # what is said besides, where compiling takes longer
@@ -76,9 +84,12 @@ def _warn_once(folder: str, error: Exception) -> None:
     _once(logging.WARNING, "not kept", text, folder, reason)
 
 
-def _announce(where: str) -> None:
-    """Log that kernels are being compiled."""
+def _announce(kernel: str, where: str) -> None:
+    """Log that kernels are being compiled: where they are kept, and of each what it is for and how long it takes."""
     _once(logging.INFO, "compiling", "compiling kernels%s", where)
+    if kernel in PURPOSES:
+        purpose, seconds = PURPOSES[kernel]
+        _log.info("  %s: about %d s of processor time", purpose, seconds)
     if slower:
         _once(logging.INFO, "slower", slower)
 
@@ -111,7 +122,7 @@ class _Cache(caching.FunctionCache):
         """A kernel that is kept; None where it is to be compiled."""
         found = self._kept(sig, target_context)
         if found is None:
-            _announce(f", once: they are kept in {self.cache_path}")
+            _announce(self._py_func.__name__, f", once: they are kept in {self.cache_path}")
             if self._has_waited(sig):
                 found = self._kept(sig, target_context)
             if found is not None:
@@ -168,14 +179,19 @@ class _Cache(caching.FunctionCache):
 
 
 class _NotKept(caching.NullCache):
+    def __init__(self, kernel: str = ""):
+        super().__init__()
+        self._kernel = kernel
+
     def load_overload(self, sig, target_context):
-        _announce("")
+        """Nothing is kept."""
+        _announce(self._kernel, "")
 
 
 def cache_of(function):
     """The cache of a kernel that Python calls."""
     if FOLDER is None:
-        return _NotKept()
+        return _NotKept(function.__name__)
     before, config.CACHE_DIR = config.CACHE_DIR, FOLDER
     try:
         return _Cache(function)
