@@ -224,16 +224,31 @@ def close(e, w, plan, points, results, lanes):
         if o.status != status.NOT_COMPUTED:
             result.status = o.status
         if plan.states and o.status == status.OK:
-            under_way = is_under_way(result)
+            right, left = touches_of(e.law, o, result)
+            under_way = is_under_way(result) or (result.period == 0 and right + left == 0 and drifts(w.section[i]))
             if under_way and plan.record >= LEAST_RECORD:
                 result.status = status.NOT_SETTLED
             if plan.attractors and not under_way:
-                right, left = touches_of(e.law, o, result)
                 keep_averages(w.section[i], period_of(e, o), REPEAT, right, left, o, result)
         if o.status == status.OK:
             before = result.transient_periods + plan.record if result.transient_periods >= 0 else 0
             result.transient_periods = before + result.more
         result.more = periods_more(plan, result)
+
+
+@jit
+def drifts(states):
+    """Whether a mass goes the same way from each section to the next one, and no less at the end: it goes away. Without
+    contacts the motion is linear, and one that fades is known by its approach."""
+    last = len(states) - 1
+    for j in range(0, states.shape[1], 2):
+        step = states[last, j] - states[0, j]
+        going = last > 0 and abs(states[last, j] - states[last - 1, j]) > 0.5 * abs(states[1, j] - states[0, j])
+        for n in range(last):
+            going = going and (states[n + 1, j] - states[n, j]) * step > 0.0
+        if going:
+            return True
+    return False
 
 
 @jit
