@@ -1,7 +1,7 @@
 """Bifurcation sweeps of linear oscillators that strike stops, with certified impacts and Lyapunov exponents.
 
 At a prompt
-    System, Oscillator, Contact, grazing, simulate, lyapunov, discontinuity_map
+    System, Oscillator, Contact, grazing, quiet, simulate, lyapunov, discontinuity_map
 Sweeps
     sweep (from Python), load_scene, estimate and run (from YAML to an HDF5 file), open (that file as an
     xarray.Dataset), plot, explore (a page on which the diagram follows sliders)
@@ -45,6 +45,7 @@ __all__ = [
     "open",
     "periodic_orbit",
     "plot",
+    "quiet",
     "run",
     "simulate",
     "sticking_onset",
@@ -77,6 +78,7 @@ if TYPE_CHECKING:
     from vibro_sweep.oscillator.contact_element import Contact
     from vibro_sweep.oscillator.grazing import grazing
     from vibro_sweep.oscillator.oscillator import Oscillator, System
+    from vibro_sweep.oscillator.quiet import quiet
     from vibro_sweep.plotting import PlotError
     from vibro_sweep.plotting.plot import plot
     from vibro_sweep.scene import SceneError, load_scene
@@ -105,6 +107,7 @@ else:
         "open": "driver.any_file",
         "periodic_orbit": "analysis.periodic.finding",
         "plot": "plotting.plot",
+        "quiet": "oscillator.quiet",
         "run": "driver.run",
         "simulate": "analysis.single.orbit",
         "sticking_onset": "analysis.branches.sticking",

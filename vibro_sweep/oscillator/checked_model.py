@@ -10,10 +10,11 @@ from vibro_sweep.checks.not_computed import why_not_computed
 from vibro_sweep.checks.real import array_of, number_of
 from vibro_sweep.checks.refusals import ParameterError
 from vibro_sweep.oscillator import wording
-from vibro_sweep.oscillator.checked_numbers import UNITS_ALLOWED, checked_number, units_from
+from vibro_sweep.oscillator.checked_numbers import UNITS_ALLOWED, checked_number, phase_in_words, units_from
 from vibro_sweep.oscillator.models.declaration import Model, Option
 from vibro_sweep.oscillator.stops import check_stops
 from vibro_sweep.tables.coordinates import MOST_MASSES
+from vibro_sweep.tables.parameters import PHASE
 from vibro_sweep.tables.quantity import LENGTHS, Parameter
 
 
@@ -47,6 +48,8 @@ def checked(model: Model, arguments: Mapping[str, Any]) -> dict[str, Any]:
     for quantity in model.numbers:
         if not quantity.each:
             value = arguments.get(quantity.name, quantity.default)
+            if quantity.name == PHASE.name and isinstance(value, str):
+                value = phase_in_words(value)
             words = isinstance(value, str) and value in quantity.words
             left_out = value is None and quantity.optional
             result[quantity.name] = value if words or left_out else checked_number(quantity, value, stops)
@@ -81,10 +84,16 @@ def checked_option(quantity: Option, value: Any) -> Any:
     if quantity.kind == "word":
         if not (isinstance(value, str) and value in quantity.words):
             raise ParameterError(quantity.name, value, f"{', '.join(quantity.words[:-1])} or {quantity.words[-1]}")
-    elif quantity.kind == "flag":
-        if not isinstance(value, (bool, np.bool_)):
-            raise ParameterError(quantity.name, value, "true or false")
-        return bool(value)
+    elif quantity.kind == "choice":
+        value = bool(value) if isinstance(value, np.bool_) else value
+        if not (isinstance(value, (bool, str)) and value in quantity.words):
+            words = [str(word).lower() for word in quantity.words]
+            raise ParameterError(quantity.name, value, f"{', '.join(words[:-1])} or {words[-1]}")
+    elif quantity.kind == "pair":
+        numbers = array_of(value, 1)
+        if numbers is None or numbers.shape != (2,) or np.any(numbers % 1) or numbers[0] == numbers[1]:
+            raise ParameterError(quantity.name, value, "two different whole numbers")
+        return tuple(int(number) for number in numbers)
     elif quantity.kind == "units":
         if (units := units_from(value)) is None:
             raise ParameterError(quantity.name, value, UNITS_ALLOWED)

@@ -1,6 +1,8 @@
 """Numbers and units that a caller gives, checked by what is declared of them."""
 
 import math
+import re
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -9,20 +11,38 @@ from vibro_sweep.checks.real import array_of, number_of
 from vibro_sweep.checks.refusals import ParameterError
 from vibro_sweep.tables.parameters import CLEARANCE
 from vibro_sweep.tables.quantity import NUMBER, POSITIVE, Parameter, Range
-from vibro_sweep.tables.units import SI, Units
+from vibro_sweep.tables.units import SI, Units, units_of_names
 
 SMALLEST = 1e-100  # of n of the gap n.x, and one over its largest
-UNITS_ALLOWED = "SI, or three positive numbers: what a mass, a length and a time of 1 are in kg, m and s"
+UNITS_ALLOWED = (
+    "SI, or names as {mass: kg, length: mm, time: s}, also with a force in place of one of these, or three positive "
+    "numbers: what a mass, a length and a time of 1 are in kg, m and s"
+)
 
 
 def units_from(value: Any) -> Units | None:
-    """None for values that are not units: neither the word SI nor three positive numbers."""
+    """None for values that are not units: neither the word SI nor three names or positive numbers."""
+    if isinstance(value, Mapping):
+        return units_of_names(value)
     if isinstance(value, str):
         return SI if value == "SI" else None
     sizes = array_of(value, 1)
     if sizes is None or sizes.shape != (3,) or not all(0 < size < math.inf for size in sizes.tolist()):
         return None
     return Units(*sizes.tolist())
+
+
+_OF_PI = re.compile(r"([-+]?)(\d*\.?\d*)\s*\*?\s*pi\s*(?:/\s*(\d+\.?\d*))?")
+
+
+def phase_in_words(text: str) -> str | float:
+    """A phase that is given as "cos", or in parts of pi, as "pi/2" and "0.3 pi"; any other text as it is."""
+    if text == "cos":  # of omega t, in place of a sine
+        return math.pi / 2
+    parts = _OF_PI.fullmatch(text.strip())
+    if parts is None or (parts[3] is not None and float(parts[3]) == 0):
+        return text
+    return float(f"{parts[1]}1") * float(parts[2] or 1) * math.pi / float(parts[3] or 1)
 
 
 def range_of(parameter: Parameter, stops: str) -> Range:

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from vibro_sweep.checks.arguments import names_its_arguments
-from vibro_sweep.oscillator.linear import Linear, amplitudes, gap_response, grazing_phase, static_state
+from vibro_sweep.oscillator.linear import Linear, amplitudes, gap_response, grazing_phase, roots, static_state
 from vibro_sweep.oscillator.oscillator import Oscillator, System, checked_system, in_closed_form
 from vibro_sweep.oscillator.paper_motion import free_motion, grazing_clearance, steady_response
 
@@ -96,7 +96,7 @@ def _of_the_paper(system: System) -> Grazing:
 def _of_any(system: Oscillator) -> Grazing:
     """The same as `_of_the_paper`, from the complex response: g = g_s + Re(G e^{i(omega t + tau)})."""
     q = system.linear
-    left_over = -np.expm1(rates(q) * system.period)  # 1 - multiplier
+    left_over = -np.expm1(roots(q) * system.period)  # 1 - multiplier
     unique = not _free(q) and bool((np.abs(left_over) > ROUNDING).all())
     determinant = float(left_over.prod().real) if unique else 0.0
     response = gap_response(q)
@@ -113,10 +113,3 @@ def _free(q: Linear) -> bool:
     """Whether there is a free mode: K is singular, in units in which each mass is 1."""
     size = 1 / np.sqrt(np.diag(q.M))
     return int(np.linalg.matrix_rank(q.K * np.outer(size, size), hermitian=True)) < len(size)
-
-
-def rates(q: Linear) -> np.ndarray:
-    """The 2N roots lambda of det(lambda^2 M + lambda C + K) = 0."""
-    n = len(q.normal)
-    inverse = np.linalg.inv(q.M)
-    return np.linalg.eigvals(np.block([[np.zeros((n, n)), np.eye(n)], [-inverse @ q.K, -inverse @ q.C]]))

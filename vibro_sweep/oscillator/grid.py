@@ -8,6 +8,7 @@ import numpy as np
 from vibro_sweep.oscillator.function_model import FunctionModel, sizes_of, stored_of
 from vibro_sweep.oscillator.linear import Linear, stack_of, stacked
 from vibro_sweep.oscillator.oscillator import Oscillator, following, in_closed_form
+from vibro_sweep.oscillator.other_words import with_omega
 from vibro_sweep.oscillator.paper_motion import resolved
 
 MOST_COMPARED = 4096
@@ -19,7 +20,8 @@ def grid(system: Oscillator, axes: dict[str, np.ndarray]) -> dict[str, np.ndarra
     Read-only arrays with one dimension for each of `axes`, in their order.
     """
     numbers = system.numbers
-    numbers.update(zip(axes, np.meshgrid(*axes.values(), indexing="ij", sparse=True), strict=True))
+    swept = dict(zip(axes, np.meshgrid(*axes.values(), indexing="ij", sparse=True), strict=True))
+    numbers |= swept | with_omega(swept, numbers)
     shape = tuple(len(values) for values in axes.values())
     if in_closed_form(system, axes):
         numbers = resolved(numbers)

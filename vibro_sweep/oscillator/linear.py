@@ -6,20 +6,22 @@ An impulse acts along M^-1 n: it changes the velocity of the gap g = n.x, with t
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache, wraps
 from operator import attrgetter
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from vibro_sweep.checks.errors import ArgumentError, ArgumentTypeError
 from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.oscillator.contact_laws.compliant import LAW as COMPLIANT
+from vibro_sweep.oscillator.other_words import with_omega
 from vibro_sweep.oscillator.stacks import least_squares
 from vibro_sweep.oscillator.steady import gap_responses, grazing_phases, responses, static_states, steady_amplitudes
 from vibro_sweep.oscillator.stops import NUMBERS, stop_of, why_rigid
+from vibro_sweep.tables.parameters import CYCLES, FREQUENCY
 
 MATRICES = ("M", "K", "C", "normal", "omega")  # fields that move free modes,
 FORCED = (*MATRICES, "constant", "sine", "cosine")  # the steady motion too,
@@ -124,12 +126,19 @@ class Family:
 
     @property
     def free(self) -> dict[str, float]:
-        """The numbers that have a value: those that may be changed along a branch."""
-        return {name: value for name, value in self.numbers.items() if isinstance(value, (int, float))}
+        """The numbers that have a value, those that may be changed along a branch; and the frequency."""
+        known = {name: value for name, value in self.numbers.items() if isinstance(value, (int, float))}
+        if FREQUENCY.name not in known or CYCLES.name in known:
+            return known
+        return known | {CYCLES.name: known[FREQUENCY.name] / (2 * math.pi)}
 
     def replace(self, **changes) -> "Family":
         """The same family with other numbers."""
-        return Family(self.build, self.numbers | changes)
+        return Family(self.build, self.numbers | with_omega(changes, self.numbers))
+
+    def built_with(self, changes: Mapping[str, Any]) -> Linear:
+        """The oscillator with other numbers, which may be complex; of arrays the stack."""
+        return self.build(**(self.numbers | with_omega(changes, self.numbers)))
 
     @cached_property
     def built(self) -> Linear:
@@ -143,7 +152,7 @@ class Family:
 
     def derivative(self, name: str, linear: Linear | None = None) -> Linear:
         """Derivatives of all fields by the parameter `name`, exact to rounding. linear: this one's, if it is known."""
-        step = self.build(**(self.numbers | {name: self.numbers[name] + 1j * STEP}))
+        step = self.built_with({name: self.free[name] + 1j * STEP})
         parts = {}
         for field, value in step._asdict().items():
             if field != "tau":
@@ -258,7 +267,7 @@ def static_state(q: Linear) -> np.ndarray | None:
 
 def stack_of(family: Family, shape: tuple[int, ...], changes: dict[str, np.ndarray]) -> Linear:
     """The oscillators of a family with these numbers, arrays that broadcast to `shape`: a stack, phases resolved."""
-    fields = {name: x for name, x in family.build(**(family.numbers | changes))._asdict().items() if x is not None}
+    fields = {name: x for name, x in family.built_with(changes)._asdict().items() if x is not None}
     entries = {name: np.shape(x)[np.ndim(x) - RANKS.get(name, 0) :] for name, x in fields.items()}
     everywhere = {name: np.broadcast_to(x, shape + entries[name]) for name, x in fields.items()}
     q = Linear(**{"tau": None} | everywhere)
@@ -326,3 +335,10 @@ def rigid_family_of(system, what: str) -> Family:
 def forcing_period(q: Linear) -> float:
     """T = 2 pi/omega."""
     return 2 * math.pi / q.omega
+
+
+def roots(q: Linear) -> np.ndarray:
+    """The 2N roots lambda of det(lambda^2 M + lambda C + K) = 0."""
+    n = len(q.normal)
+    inverse = np.linalg.inv(q.M)
+    return np.linalg.eigvals(np.block([[np.zeros((n, n)), np.eye(n)], [-inverse @ q.K, -inverse @ q.C]]))

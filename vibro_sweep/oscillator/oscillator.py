@@ -15,10 +15,11 @@ from numpy.typing import ArrayLike
 from vibro_sweep.checks.arguments import bound, check_type, names_its_arguments
 from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.checks.not_computed import PAGE
+from vibro_sweep.checks.real import array_of, number_of
 from vibro_sweep.checks.refusals import ParameterError
 from vibro_sweep.oscillator import wording
 from vibro_sweep.oscillator.checked_model import checked, checked_option
-from vibro_sweep.oscillator.checked_numbers import UNITS_ALLOWED
+from vibro_sweep.oscillator.checked_numbers import UNITS_ALLOWED, checked_number
 from vibro_sweep.oscillator.contact_element import NAMES as CONTACT_NAMES
 from vibro_sweep.oscillator.contact_element import Contact, check_left_out, contacts_in
 from vibro_sweep.oscillator.contact_laws import OTHER_STOPS, STOP_NUMBERS
@@ -27,10 +28,12 @@ from vibro_sweep.oscillator.models import MODELS, model_named
 from vibro_sweep.oscillator.models.declaration import OF_STOPS, STOPS, UNITS, WHICH_STOPS, Model, Option, linear_of
 from vibro_sweep.oscillator.models.two_mass import MODEL, PAPER, PARAMETERS
 from vibro_sweep.oscillator.modes import Modes, modes
+from vibro_sweep.oscillator.other_words import OTHER_WORDS, STANDS_FOR, in_own_numbers
 from vibro_sweep.oscillator.paper_motion import KNOWN, resolved, with_phase
-from vibro_sweep.oscillator.physical import PHYSICAL, in_numbers
+from vibro_sweep.oscillator.physical import OMEGA, PHYSICAL, in_numbers
+from vibro_sweep.oscillator.reduction import basis_of, matrix_of
 from vibro_sweep.oscillator.stops import completed, followers
-from vibro_sweep.tables.parameters import PHASE
+from vibro_sweep.tables.parameters import CYCLES, PHASE, STOP_LEFT, STOP_RIGHT
 from vibro_sweep.tables.quantity import Parameter
 from vibro_sweep.tables.units import Units
 
@@ -49,9 +52,12 @@ class Oscillator:
     k_stop, c_stop, preload : of compliant stops, in place of R: in contact the force k_stop delta + c_stop delta' +
         preload acts on the gap, delta the way behind the stop; with `_left` of the left one
     release : displacement, a contact ends where delta = 0; force, where its force is zero
-    tau : phase in radians, or "grazing": where the gap of the free motion is largest at t = 0
+    frequency : in cycles per unit of time, in place of omega = 2 pi frequency
+    tau : phase in radians, or "grazing": where the gap of the free motion is largest at t = 0; "cos" is pi/2
     stops : both, right, left; b may be <= 0 where there is one
-    units : for labels: SI; or what a mass, a length and a time of 1 are in kg, m and s; left out: nondimensional
+    stop_right, stop_left : where they stand, in place of b, offset and stops
+    units : for labels: SI; {"mass": "kg", "length": "mm", "time": "s"}, or a force in place of one of these; or what a
+        mass, a length and a time of 1 are in kg, m and s; left out: nondimensional
     contacts : in place of contact_normal, b, R, ...: a list of `Contact`; several are not computed yet
 
     Numbers are attributes: `force`, and `force1`, `force2`, ... too. Raises ParameterError for what cannot be.
@@ -71,14 +77,15 @@ class Oscillator:
     def __init__(
         self, M: ArrayLike, K: ArrayLike, C: ArrayLike | None = None, *, modal_damping: ArrayLike | None = None,
         rayleigh: ArrayLike | None = None, force: ArrayLike = 0, force_cos: ArrayLike = 0, constant: ArrayLike = 0,
-        force_power: float = 0, contact_normal: ArrayLike | None = None, omega: float, b: float | None = None,
-        offset: float = 0.0,
+        force_power: float = 0, contact_normal: ArrayLike | None = None, omega: float | None = None,
+        frequency: float | None = None, b: float | None = None, offset: float = 0.0,
+        stop_right: float | None = None, stop_left: float | None = None,
         R: float | None = None, R_left: float | None = None, k_stop: float | None = None, c_stop: float | None = None,
         preload: float | None = None, k_stop_left: float | None = None, c_stop_left: float | None = None,
         preload_left: float | None = None, release: Literal["displacement", "force"] = "displacement",
         tau: float | Literal["grazing"] = "grazing",
         stops: Literal["both", "right", "left"] = "both",
-        units: Literal["SI"] | ArrayLike | None = None,
+        units: Literal["SI"] | Mapping[str, str] | ArrayLike | None = None,
         contacts: Sequence[Contact | Mapping] | None = None,
     ) -> None:  # fmt: skip
         arguments = {name: value for name, value in locals().items() if name != "self"}
@@ -91,7 +98,7 @@ class Oscillator:
             if "contact_normal" in (quantity.name for quantity in model.options):  # the first one is its own
                 check_left_out(arguments)
                 arguments, others = arguments | vars(others[0]), others[1:]
-        vars(self).update(model=model, arguments=checked(model, arguments), others=others)
+        vars(self).update(model=model, arguments=checked(model, in_own_numbers(arguments)), others=others)
         for i, contact in enumerate(others, 2):
             if len(contact.contact_normal) != self.masses:
                 allowed = f"a list of {self.masses} numbers, one for each mass"
@@ -112,6 +119,57 @@ class Oscillator:
         """
         return _made(model_named(name), arguments)
 
+    @classmethod
+    def reduced(
+        cls, M: Any, K: Any, C: Any = None, *, modes: int, contact_normal: ArrayLike, force: ArrayLike = 0,
+        force_cos: ArrayLike = 0, constant: ArrayLike = 0, modal_damping: ArrayLike | None = None, **options: Any,
+    ) -> Oscillator:  # fmt: skip
+        """A large model, as a finite-element program writes it, by its lowest modes and the static flexibility at the
+        contact: an Oscillator of modes + 1 coordinates, 16 at most.
+
+        M, K, C : (n, n), symmetric, arrays or sparse matrices of SciPy
+        modes : how many modes, without damping
+        contact_normal, force, force_cos, constant : (n,), by the rows of M
+        modal_damping : in place of C, a ratio for all coordinates, or one for each of the modes + 1
+        options : omega, R, b, units and the like, as of an Oscillator
+
+        Displacements of the model are `basis @ x`, (n,), of the coordinates x of the oscillator, which has `.basis`.
+        Raises ParameterError.
+
+        Examples
+        --------
+        A bar of 50 elements, free at one end, held at the other, between stops beside the free end.
+
+        >>> import numpy as np
+        >>> import vibro_sweep as vs
+        >>> steps = np.diff(np.eye(51), axis=0)[:, 1:] * 50
+        >>> bar = vs.Oscillator.reduced(
+        ...     np.eye(50) / 50, steps.T @ steps / 50, modes=3, contact_normal=np.eye(50)[-1], modal_damping=0.01,
+        ...     force=np.eye(50)[-1], omega=1.2, R=0.8, b=1.0,
+        ... )
+        >>> bar.masses, np.sqrt(np.diag(bar.K))[:2].round(3)
+        (4, array([1.555, 4.664]))
+        """
+        normal = array_of(contact_normal, 1)
+        if normal is None:
+            raise ParameterError("contact_normal", contact_normal, "a list of finite numbers")
+        basis, squares = basis_of(M, K, normal, modes)
+        arguments = dict(options)
+        for name, value in (("force", force), ("force_cos", force_cos), ("constant", constant)):
+            given = array_of(value, 1)
+            if given is not None and given.shape != normal.shape:
+                raise ParameterError(name, value, f"a list of {len(normal)} numbers, one for each row of M")
+            arguments[name] = 0 if number_of(value) == 0 else (basis.T @ given).tolist() if given is not None else value
+        if C is not None:
+            arguments["C"] = basis.T @ (matrix_of("C", C, len(normal)) @ basis)
+            arguments["C"] = ((arguments["C"] + arguments["C"].T) / 2).tolist()
+        if modal_damping is not None:
+            ratio = number_of(modal_damping)
+            arguments["modal_damping"] = modal_damping if ratio is None else [ratio] * len(squares)
+        made = Oscillator(np.eye(len(squares)), np.diag(squares), contact_normal=basis.T @ normal, **arguments)
+        vars(made)["basis"] = basis
+        return made
+
     def __setattr__(self, name, value):
         raise AttributeError(f"{name}: an Oscillator is not changed; `replace` makes another one")
 
@@ -129,7 +187,8 @@ class Oscillator:
         return [*super().__dir__(), *self.arguments, *self.described]
 
     def __reduce__(self):
-        return _again, (self.model.name, self.arguments, self.others)
+        basis = {"basis": self.basis} if "basis" in vars(self) else {}
+        return _again, (self.model.name, self.arguments, self.others, basis)
 
     def __eq__(self, other):
         same = isinstance(other, Oscillator) and self.model.name == other.model.name
@@ -166,7 +225,7 @@ class Oscillator:
         return {
             name: replace(quantity, units=units.get(name, quantity.units))
             for name, quantity in flat.items()
-            if name in numbers
+            if name in numbers or name == CYCLES.name
         }
 
     @property
@@ -220,6 +279,19 @@ class Oscillator:
         return float(self.linear.tau)
 
     @property
+    def positions(self) -> dict[str, float]:
+        """Where the stops stand, by the names that say so: `stop_right`, `stop_left`, as far as there are these."""
+        b, offset = self.arguments["b"], self.arguments.get("offset", 0.0)
+        both = {STOP_RIGHT.name: offset + b, STOP_LEFT.name: offset - b}
+        which = self.options.get("stops", "both")
+        return {name: place for name, place in both.items() if which in ("both", name.removeprefix("stop_"))}
+
+    @property
+    def frequency(self) -> float:
+        """omega/(2 pi): the frequency of the force in cycles per unit of time."""
+        return self.omega / (2 * math.pi)
+
+    @property
     def period(self) -> float:
         """The forcing period T = 2 pi/omega."""
         return 2 * math.pi / self.omega
@@ -237,9 +309,12 @@ class Oscillator:
 
     def replace(self, **changes: Any) -> Oscillator:
         """A copy with other numbers. Raises ParameterError, also for a name that is not one of them."""
-        arguments = dict(self.arguments)
+        replaced = {other for name in changes for other in STANDS_FOR.get(name, ())}
+        arguments = {name: value for name, value in self.arguments.items() if name not in replaced}
+        if changes.keys() & {STOP_RIGHT.name, STOP_LEFT.name}:  # the other stop stays where it is
+            arguments |= self.positions
         for name, value in changes.items():
-            if name in arguments:
+            if name in self.arguments or name in STANDS_FOR:
                 arguments[name] = value
             elif name in self.numbers:
                 lists = next(
@@ -251,9 +326,11 @@ class Oscillator:
                 entries[int(name[len(lists) :]) - 1] = value
                 arguments[lists] = entries
             else:
-                known = [quantity.name for quantity in (*self.model.numbers, *self.model.options)]
+                known = [quantity.name for quantity in (*self.model.numbers, *self.model.options, *OTHER_WORDS)]
                 raise ParameterError(name, value, f"one of {', '.join(known)}")
-        return _made(self.model, arguments, self.others)
+        made = _made(self.model, arguments, self.others)
+        vars(made).update({"basis": self.basis} if "basis" in vars(self) else {})
+        return made
 
 
 def following(model: Model, numbers: Mapping[str, Any]) -> dict[str, Any]:
@@ -270,8 +347,10 @@ def _made(model: Model, arguments: Mapping[str, Any], others: tuple[Contact, ...
     return made
 
 
-def _again(name: str, arguments: Mapping[str, Any], others: tuple[Contact, ...]) -> Oscillator:
-    return _made(MODELS[name], arguments, others)
+def _again(name: str, arguments: Mapping[str, Any], others: tuple[Contact, ...], more: Mapping[str, Any]) -> Oscillator:
+    made = _made(MODELS[name], arguments, others)
+    vars(made).update(more)
+    return made
 
 
 def _check_one_contact(system: Oscillator) -> None:
@@ -321,7 +400,8 @@ class System(Oscillator):
     __signature__ = _signature(*PAPER, WHICH_STOPS, *PARAMETERS[len(PAPER) :], *OF_STOPS, UNITS)
 
     def __init__(self, *numbers: float, **arguments: Any) -> None:
-        self._set(MODEL, _arguments("System", System.__signature__, *numbers, **arguments))
+        named = in_own_numbers(arguments)
+        self._set(MODEL, _arguments("System", System.__signature__, *numbers, **named))
 
     def __repr__(self) -> str:
         """The call that makes it, without the numbers of compliant stops where there is none."""
@@ -350,6 +430,11 @@ class System(Oscillator):
         >>> round(system.omega, 6), round(system.b, 6), round(system.zeta, 6)
         (0.63, 4.0, 0.05)
         """
+        if (frequency := arguments.pop(CYCLES.name, None)) is not None:
+            if arguments.get(OMEGA.name) is not None:
+                allowed = "left out where Omega is given, in place of which it stands"
+                raise ParameterError(CYCLES.name, frequency, allowed)
+            arguments[OMEGA.name] = 2 * math.pi * checked_number(CYCLES, frequency)
         arguments = _arguments("System.physical", _PHYSICAL, **arguments)
         stops = checked_option(WHICH_STOPS, arguments["stops"])
         alike = {name: arguments[name] for name in arguments if name in System.__signature__.parameters}
@@ -403,5 +488,6 @@ def checked_system(system: object) -> None:
 _said, _, _examples = inspect.cleandoc(System.__doc__ or "").partition("\n\nExamples\n")
 if _examples:
     _parameters = [f"{quantity.name} : {quantity.described}; {quantity.range.text}" for quantity in PARAMETERS]
+    _parameters += [f"{word.name} : {word.text}" for word in OTHER_WORDS]
     _parameters += [f"stops : {', '.join(STOPS)}", f"units : for labels; {UNITS_ALLOWED}; left out: none"]
     System.__doc__ = "\n".join([_said, "\nParameters\n----------", *_parameters, "\nExamples", _examples])

@@ -14,6 +14,9 @@ from vibro_sweep.oscillator.contact_laws.rigid import RESTITUTION, RESTITUTION_L
 from vibro_sweep.tables.parameters import CLEARANCE, OFFSET
 from vibro_sweep.tables.quantity import NOT_NEGATIVE, POSITIVE, Parameter
 
+OMEGA = Parameter("Omega", "forcing frequency", "angular frequency of the force; or `frequency`, in Hz", r"\Omega",
+    "rad s-1", POSITIVE,
+)  # fmt: skip
 PHYSICAL = (  # quantities in SI units, from which the numbers of a System follow (section 2 of the paper)
     Parameter("M1", "mass 1", "mass between the stops", "M_1", "kg", POSITIVE),
     Parameter("M2", "mass 2", "second mass", "M_2", "kg", POSITIVE),
@@ -23,8 +26,7 @@ PHYSICAL = (  # quantities in SI units, from which the numbers of a System follo
     Parameter("C2", "damping 2", "damping between the second mass and the ground", "C_2", "N s m-1", NOT_NEGATIVE),
     Parameter("P1", "force 1", "amplitude of the force on the first mass", "P_1", "N", NOT_NEGATIVE),
     Parameter("P2", "force 2", "amplitude of the force on the second mass", "P_2", "N", NOT_NEGATIVE),
-    Parameter("Omega", "forcing frequency", "angular frequency of the force, 2 pi times that in Hz", r"\Omega",
-              "rad s-1", POSITIVE),
+    OMEGA,
     RESTITUTION,
     replace(CLEARANCE, name="B", symbol="B", text="clearance on each side, from the middle to a stop"),
     replace(OFFSET, name="B0", symbol="B_0",

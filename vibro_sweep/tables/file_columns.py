@@ -9,6 +9,7 @@ from vibro_sweep.tables.outcomes import EDGES, POINTS, REASONS, names
 from vibro_sweep.tables.quantity import Quantity
 
 BRANCHES, WINDOWS, CHART = "branches", "windows", "curves"  # the kinds of such files
+RAGGED_KINDS = (BRANCHES, WINDOWS, CHART)
 SWEEP = "sweep"  # the kind of other HDF5 files
 OF_FIRST = "of the first parameter"  # the unit that such a number has
 OF_PARAMETER = "of the parameters"  # that which all of them have; where they differ there is none

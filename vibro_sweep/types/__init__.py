@@ -21,6 +21,7 @@ from vibro_sweep.live.served_page import LivePage
 from vibro_sweep.oscillator.grazing import Grazing
 from vibro_sweep.oscillator.linear import Family, Linear
 from vibro_sweep.oscillator.modes import Modes
+from vibro_sweep.oscillator.quiet import Quiet
 from vibro_sweep.oscillator.window_families import WindowFamily
 from vibro_sweep.scene import Continuation, Scene, Section, Start, Trajectory
 from vibro_sweep.tables.picture_kinds import Plottable
@@ -44,6 +45,7 @@ __all__ = [
     "Orbit",
     "PeriodicOrbit",
     "Plottable",
+    "Quiet",
     "RunReport",
     "Scene",
     "Section",

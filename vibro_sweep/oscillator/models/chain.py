@@ -9,14 +9,18 @@ from vibro_sweep.oscillator.stacks import vector
 from vibro_sweep.tables.quantity import NOT_NEGATIVE, NUMBER, POSITIVE, Parameter
 
 
-def chain(*, m, k, c, force, constant, stop_at, omega, tau, **stops) -> Linear:
+def chain(*, m, k, c, force, constant, stop_at, omega, tau, stop_between=None, **stops) -> Linear:
     """The oscillator; numbers may be complex."""
     n, masses = len(m), vector(m)
+    normal = np.eye(n)[stop_at - 1]
+    if stop_between is not None:
+        first, second = stop_between
+        normal = np.eye(n)[second - 1] - np.eye(n)[first - 1]
     return Linear(
         M=masses[..., None] * np.eye(n),
         K=between_walls(k),
         C=between_walls(c),
-        normal=np.eye(n)[stop_at - 1],
+        normal=normal,
         constant=vector(constant),
         sine=vector(force),
         cosine=np.zeros(n),
@@ -41,6 +45,11 @@ def _check(arguments) -> None:
     if not 1 <= arguments["stop_at"] <= masses:
         allowed = f"a whole number from 1 to {masses}, the number of masses"
         raise ParameterError("stop_at", arguments["stop_at"], allowed)
+    pair = arguments["stop_between"]
+    if pair is not None and not (1 <= min(pair) and max(pair) <= masses):
+        raise ParameterError("stop_between", list(pair), f"two whole numbers from 1 to {masses}, the number of masses")
+    if pair is not None and arguments["stop_at"] != 1:
+        raise ParameterError("stop_between", list(pair), "left out where stop_at is given")
 
 
 def _list(name: str, symbol: str, units: str, range_, each: str, label: str, text: str, default=None) -> Parameter:
@@ -60,6 +69,7 @@ MODEL = Model(
     m_i x_i'' + c_i (x_i' - x_(i-1)') + c_(i+1) (x_i' - x_(i+1)')
               + k_i (x_i - x_(i-1)) + k_(i+1) (x_i - x_(i+1)) = constant_i + force_i sin(omega t + tau)
     x_0 = x_(n+1) = 0, the walls; offset - b <= x_s <= offset + b for the mass s = stop_at
+    stop_between: [i, j]   offset - b <= x_j - x_i <= offset + b, between two masses
 """,
     source="S. Natsiavas, J. Sound Vib. 165 (1993) 439",
     numbers=(
@@ -72,6 +82,12 @@ MODEL = Model(
     ),
     options=(
         Option("stop_at", "whole", "the mass that hits the stops, counted from 1", 1),
+        Option(
+            "stop_between",
+            "pair",
+            "[i, j], in place of stop_at: the stops bound the gap x_j - x_i between two masses",
+            optional=True,
+        ),
         WHICH_STOPS,
         *OF_STOPS,
         UNITS,

@@ -8,20 +8,23 @@ import numpy as np
 
 from vibro_sweep.oscillator.contact_laws import LAWS, STOP_NUMBERS
 from vibro_sweep.oscillator.linear import Linear
-from vibro_sweep.tables.parameters import CLEARANCE, FREQUENCY, OFFSET, PHASE
+from vibro_sweep.tables.parameters import CLEARANCE, CYCLES, FREQUENCY, OFFSET, PHASE
 from vibro_sweep.tables.quantity import LENGTHS, Parameter
 
 STOPS = ("both", "right", "left")
 
 
 class Option(NamedTuple):
-    """What is not a number that could be swept. `kind`: "word" | "flag" | "whole" | "matrix" | "vector" | "units"."""
+    """What is not a number that could be swept.
+
+    kind : "word" | "choice" | "whole" | "pair" | "matrix" | "vector" | "units"
+    """
 
     name: str
     kind: str
     text: str
     default: Any = None
-    words: tuple[str, ...] = ()  # of a word
+    words: tuple[str | bool, ...] = ()  # of a word, or a choice
     optional: bool = False
     units: str = "1"  # of a matrix, where the system is given in SI
 
@@ -42,10 +45,12 @@ class Model(NamedTuple):
     depending: Callable[[Mapping[str, Any]], dict[str, str]] = lambda values: {}  # units of numbers that others decide
 
     def flat(self, masses: int) -> dict[str, Parameter]:
-        """The numbers that can be swept; of a list m these are m1, m2, ..."""
+        """The numbers that can be swept; of a list m these are m1, m2, ..; and the frequency in place of omega."""
         result = {}
         for quantity in self.numbers:
             result |= {x.name: x for x in (entries(quantity, masses) if quantity.each else [quantity])}
+            if quantity.name == FREQUENCY.name:
+                result[CYCLES.name] = CYCLES
         return result
 
 
