@@ -61,19 +61,22 @@ def create(
 
 
 def set_attribute(of: h5py.Group | h5py.Dataset, name: str, value: Any) -> None:
-    """An attribute of a kind that netCDF has: a text or texts of fixed length, 32-bit integers, doubles."""
+    """An attribute of a kind that netCDF has: a text or texts, which h5py reads as str, 32-bit integers, doubles."""
     values = np.asarray(value)
     if values.dtype.kind == "U":
-        raw = [text.encode() for text in values.ravel().tolist()]
-        least = 2 if values.ndim else 1  # h5netcdf takes a list of texts of length 1 for one of characters
-        kind = h5py.string_dtype("utf-8", max([least, *map(len, raw)]))
-        of.attrs.create(name, np.array(raw) if values.ndim else np.bytes_(raw[0]), dtype=kind)
+        texts = values.astype(object) if values.ndim else str(value)
+        of.attrs.create(name, texts, dtype=h5py.string_dtype("utf-8"))
     elif values.ndim and not values.size:
         of.attrs.create(name, h5py.Empty(h5py.string_dtype("utf-8", 2)))
     elif values.dtype == np.int64 and np.array_equal(values.astype(np.int32), values):
         of.attrs[name] = values.astype(np.int32)
     else:
         of.attrs[name] = value
+
+
+def text_of(attribute: str | bytes) -> str:
+    """An attribute that is a text; some files have it as bytes of a fixed length."""
+    return attribute.decode() if isinstance(attribute, bytes) else attribute
 
 
 def _create(h5: h5py.File, name: str, variable: xarray.Variable, later: bool = False) -> h5py.Dataset:

@@ -16,6 +16,7 @@ from vibro_sweep.results import ragged_dataset
 from vibro_sweep.results.sweep_dataset import Sweep
 from vibro_sweep.tables.file_columns import SWEEP
 from vibro_sweep.tables.outcomes import NOT_COMPUTED
+from vibro_sweep.tables.units import AS_STORED, Display
 
 _log = logging.getLogger("vibro_sweep")
 
@@ -46,11 +47,14 @@ def warn_where_incomplete(data: xarray.Dataset) -> None:
 
 
 @contextmanager
-def sweep_in(source: "str | Path | xarray.Dataset", computes: bool) -> Iterator[Sweep]:
+def sweep_in(
+    source: "str | Path | xarray.Dataset", computes: bool, display: Display | None = AS_STORED
+) -> Iterator[Sweep]:
     """The sweep of a file, or of a Dataset, whose numbers are verified when they are read.
 
     computes : whether something is computed from it, and not only drawn: a file without a seal is refused then
-    Raises StoreError.
+    display : the units in which it gives numbers; None: those of its picture
+    Raises StoreError, and ArgumentError for units that do not belong to it.
     """
     if isinstance(source, (str, Path)):
         path = checked_path("data", source)
@@ -61,9 +65,9 @@ def sweep_in(source: "str | Path | xarray.Dataset", computes: bool) -> Iterator[
                 _check_ragged(data, path)
             if not data.encoding["sealed"]:
                 _log.warning("%s", foreign(path))
-            yield Sweep(data, str(path), lambda name: verify(data, [name]))
+            yield Sweep(data, str(path), lambda name: verify(data, [name]), display)
     else:
-        yield Sweep(source, "this dataset")
+        yield Sweep(source, "this dataset", display=display)
 
 
 def _check_ragged(data: xarray.Dataset, path: Path) -> None:

@@ -11,7 +11,7 @@ import xarray
 
 from vibro_sweep.files.checksum import checksums
 from vibro_sweep.files.file_errors import StoreError
-from vibro_sweep.files.hdf5 import CHECKS, OLD
+from vibro_sweep.files.hdf5 import CHECKS, OLD, text_of
 from vibro_sweep.results.boxes import boxes
 from vibro_sweep.tables.file_columns import SWEEP
 from vibro_sweep.tables.outcomes import NOT_COMPUTED
@@ -84,7 +84,7 @@ def _can_be_read(data: xarray.Dataset, name: str) -> bool:
 
 def is_verified(h5: h5py.File, name: str) -> bool:
     """Whether a variable has checksums now: what follows from all points has them when the run is complete."""
-    follows = h5[CHECKS].attrs["following"].decode().split()
+    follows = text_of(h5[CHECKS].attrs["following"]).split()
     return name in h5[CHECKS] and (name not in follows or end_of(h5) is not None)
 
 

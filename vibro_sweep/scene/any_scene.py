@@ -11,8 +11,9 @@ from vibro_sweep.checks.refusals import cut
 from vibro_sweep.oscillator import wording
 from vibro_sweep.oscillator.models import DEFAULT
 from vibro_sweep.oscillator.oscillator import Oscillator
+from vibro_sweep.oscillator.other_words import own_name
 
-from .problems import SceneError, located
+from .problems import SceneError, located, problem
 from .written import yaml_of
 from .yaml_text import YAMLTextError, lines_of, read_yaml
 
@@ -24,7 +25,8 @@ class AnyScene(ABC):
     """A scene: what to compute.
 
     source : the file that it was read from
-    given : the YAML text that it was read from; None of a copy with other values
+    as_written : the YAML text that it was read from; None of a copy with other values
+    system_file : another scene's file, from which its system is, where it names one
     checked : whether it was made from data, which were checked; `dataclasses.replace` makes one that is not
     """
 
@@ -32,6 +34,7 @@ class AnyScene(ABC):
     system: Oscillator
     source: Path | None = field(default=None, kw_only=True)
     as_written: str | None = field(default=None, init=False)
+    system_file: Path | None = field(default=None, init=False)
     checked: bool = field(default=False, init=False)
 
     @abstractmethod
@@ -50,15 +53,16 @@ class AnyScene(ABC):
     @property
     def inputs(self) -> list[Path]:
         """The files that its run must not write to."""
-        return [self.source] if self.source else []
+        return [path for path in (self.source, self.system_file) if path]
 
     def _system_text(self, without: Collection[str]) -> str:
         """The oscillator in a few lines, but for numbers that change."""
         system = self.system
-        usual = {"offset": 0.0}  # which most oscillators have
+        usual = {"offset": 0.0, "m": 1.0}  # which most oscillators have
         known = {name: value for name, value in system.numbers.items() if value not in (None, usual.get(name))}
         known |= {name: value for name, value in system.options.items() if value is not None}
-        said = wording.numbers({name: value for name, value in known.items() if name not in without})
+        changing = {own_name(name) for name in without}
+        said = wording.numbers({name: value for name, value in known.items() if name not in changing})
         kind = "" if system.model.name == DEFAULT else f"{system.model.name}: "
         return textwrap.fill(f"  system    {kind}{said}", 88, subsequent_indent=12 * " ", break_long_words=False)
 
@@ -79,10 +83,31 @@ class AnyScene(ABC):
 
 def parsed(text: str, name: str, source: Path | None, scene_of: Callable[[object, str], S]) -> S:
     """The scene of a YAML text; `name` stands in messages, its stem in the scene. Raises SceneError."""
+    other = None
     try:
-        scene = scene_of(read_yaml(text), name)
+        data = read_yaml(text)
+        if isinstance(data, dict) and isinstance(data.get("system"), str) and source is not None:
+            other = source.parent / data["system"]
+            data = data | {"system": _system_in(other)}
+        scene = scene_of(data, name)
     except YAMLTextError as error:
         raise SceneError(name, [str(error)]) from None
     except SceneError as error:
         raise SceneError(name, located(error.problems, lines_of(text))) from None
-    return scene._with_origin(as_written=text, source=source)
+    # where the system is that of another file, the scene is kept with its numbers
+    return scene._with_origin(as_written=None if other else text, source=source, system_file=other)
+
+
+def _system_in(path: Path) -> object:
+    """The `system` of another scene's file. Raises SceneError."""
+    try:
+        data = read_yaml(path.read_text(encoding="utf-8-sig"))
+    except (OSError, UnicodeDecodeError, YAMLTextError) as error:
+        why = getattr(error, "strerror", None) or str(error)
+        raise SceneError(path.name, [problem("system", path.name, f"that file cannot be read: {why}")]) from None
+    system = data.get("system") if isinstance(data, dict) else None
+    if not isinstance(system, dict):
+        raise SceneError(
+            path.name, [problem("system", path.name, "that file must be a scene with a system of its own")]
+        )
+    return system

@@ -9,6 +9,7 @@ from vibro_sweep.oscillator.oscillator import Oscillator
 from vibro_sweep.oscillator.stops import DAMPER_ALONE, why_rigid
 from vibro_sweep.tables.exponents import LEAST_RECORD
 from vibro_sweep.tables.observables import WORDS
+from vibro_sweep.tables.units import NAMES, display_of
 
 from .fields import Form
 from .problems import problem
@@ -29,6 +30,15 @@ def combination_problems(form: Form, data: dict, system: Oscillator | None) -> l
         problems.append(problem("section.stop", section.stop, f"the system has no such stop (stops: {stops})"))
     if section.kind == "phase" and "stop" in section.model_fields_set:
         problems.append(problem("section.stop", section.stop, "belongs to `kind: impact`; leave it out"))
+    units = getattr(form.picture, "units", None)
+    if units is not None and display_of(units) is None:
+        text = f"must be a list of names of units, one of a kind, such as {NAMES}"
+        problems.append(problem("picture.units", units, text))
+    elif units and system is not None and system.units is None:
+        problems.append(problem("picture.units", units, "the system has no units; give it some, by `units`"))
+    if getattr(form.trajectory, "from", "end") == "start" and hasattr(form.start, "follow"):
+        text = "orbits that follow the sweep begin where the last one ended; leave it out, or give one start"
+        problems.append(problem("trajectory.from", "start", text))
     if not form.observe and form.trajectory is None:
         text = f"nothing would be computed; name some of {', '.join(WORDS)}, or ask for a trajectory"
         problems.append(problem("observe", [], text))

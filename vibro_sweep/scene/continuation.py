@@ -9,7 +9,9 @@ from pydantic import ValidationError
 
 from vibro_sweep.checks.refusals import ParameterError, not_allowed
 from vibro_sweep.oscillator.oscillator import Oscillator
+from vibro_sweep.oscillator.other_words import own_name
 from vibro_sweep.tables.coordinates import state
+from vibro_sweep.tables.parameters import CYCLES, FREQUENCY
 
 from .any_scene import AnyScene, parsed
 from .continue_form import ORIGINS
@@ -17,7 +19,7 @@ from .data import InvalidValue
 from .fields import Form
 from .form import continuation_form
 from .problems import SceneError, form_problems, problem
-from .system import kind_of, system_of
+from .system import in_own_words, kind_of, system_of
 from .written import as_data, system_data
 
 _IN_FILES = ("sweep", "branches")  # orbits of a file, which has the first number of `parameter`
@@ -148,14 +150,16 @@ def _continuation_of(data: Any, name: str) -> Continuation:
     except ValidationError as error:
         raise SceneError(name, form_problems(error, scheme, data)) from None
     body = getattr(form, "continue")
+    form, wrong_words = in_own_words(form)
     chosen, problems = _origin(getattr(body, "from"))
     ranges, more = _ranges(body.parameter, list(data["continue"]["parameter"]))
-    problems += more
+    problems += wrong_words + more
     if len(ranges) == 1 and "of" in body.model_fields_set:
         problems.append("continue.of: belongs to two keys of `parameter`; leave it out")
     first = next(iter(ranges), "")
-    missing = first and chosen[0] in _IN_FILES and getattr(form.system, first, None) is None
-    system, more = system_of(form, {first: ranges[first]} if missing else {}, kind, masses)
+    missing = first and chosen[0] in _IN_FILES and getattr(form.system, own_name(first), None) is None
+    at_end = {first: ranges[first]} if missing else {}
+    system, more = system_of(form, at_end, kind, masses) if not wrong_words else (None, [])
     problems += more
     for key, limits in ranges.items() if system is not None else ():
         numbers = system.family.free
@@ -204,6 +208,9 @@ def _ranges(parameter: Form, keys: list[str]) -> tuple[dict[str, tuple[float, fl
     """The ranges in the order of the text, and what is wrong."""
     if not 1 <= len(keys) <= 2:
         return {}, [problem("continue.parameter", keys, "must have one key, or two for curves")]
+    if {CYCLES.name, FREQUENCY.name} <= set(keys):
+        text = f"{CYCLES.name} stands in place of {FREQUENCY.name}; leave one out"
+        return {}, [problem("continue.parameter", keys, text)]
     ranges = {key: tuple(getattr(parameter, key)) for key in keys}
     wrong = [
         problem(f"continue.parameter.{key}", list(bounds), "must be two numbers, the lower end and a greater one")

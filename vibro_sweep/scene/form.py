@@ -89,10 +89,17 @@ def _state_form(name: str, masses: int, base: type[Form] = Form, **more) -> type
 
 
 class RandomStart(Form):
-    """Several random states at every point of the sweep."""
+    """Several random states at every point of the sweep, evenly in a box, of those with the gap between the stops.
+
+    The box is |x_i - offset| < |b|, |v_i| < omega |b| where nothing is said of a coordinate.
+    """
 
     random: Whole = Field(ge=1, le=100_000, description="number of starts")
     seed: Whole = Field(default=0, ge=0, le=2**63 - 1, description="the same seed gives the same starts")
+    box: dict[str, list[float]] = Field(
+        default={},
+        description="the range of coordinates, as {x1: [-1, 1]}; of others |x_i - offset| < |b|, |v_i| < omega |b|",
+    )
 
 
 class FollowStart(Form):
@@ -134,11 +141,37 @@ class SectionForm(Form):
     stop: Literal["right", "left"] = Field(default="right", description="with `kind: impact`: the stop")
 
 
-class TrajectoryForm(Form):
-    """The continuous orbit after the last section point, for phase portraits and time histories."""
+TrajectoryForm = create_model(
+    "TrajectoryForm",
+    __base__=Form,
+    __doc__="The continuous orbit, for phase portraits and time histories.",
+    periods=(Whole, Field(ge=1, le=MAX_COUNT, description="its length in forcing periods")),
+    samples=(Whole, Field(ge=2, le=MAX_COUNT, description="number of equidistant times")),
+    **{
+        "from": (
+            Literal["end", "start"],
+            Field(
+                default="end", description="end: after the last section point; start: from t = 0, where orbits begin"
+            ),
+        )
+    },
+)
 
-    periods: Whole = Field(ge=1, le=MAX_COUNT, description="its length in forcing periods")
-    samples: Whole = Field(ge=2, le=MAX_COUNT, description="number of equidistant times")
+
+class PictureForm(Form):
+    """The picture that is drawn by default, and the units in which numbers are shown."""
+
+    kind: Literal[tuple(PICTURES)] = Field(default=None, description="kind of picture, if the file has what it needs")
+    units: list[str] = Field(
+        default=None,
+        description="units in which pictures, tables and the page show numbers, whatever the system's are: [mm, Hz]",
+    )
+
+
+Picture = Annotated[
+    Annotated[Literal[tuple(PICTURES)], Tag("picture as a word")] | Annotated[PictureForm, Tag("picture and units")],
+    Discriminator(lambda value: "picture and units" if isinstance(value, dict) else "picture as a word"),
+]
 
 
 # Each word with its text, which editors show.
@@ -171,7 +204,7 @@ def _scene_form(system, numbers: Iterable[Parameter], masses: int) -> type[Form]
         "SceneForm",
         __base__=Form,
         __doc__="A scene of vibro-sweep: what to compute.",
-        system=(system, Field(description="the oscillator")),
+        system=(system, Field(description="the oscillator; or the name of another scene's file, which has it")),
         dynamics=(
             Literal["flow", "map"],
             Field(
@@ -204,7 +237,7 @@ def _scene_form(system, numbers: Iterable[Parameter], masses: int) -> type[Form]
         ),
         trajectory=(TrajectoryForm, Field(default=None, description="store the continuous orbit as well")),
         picture=(
-            Literal[tuple(PICTURES)],
+            Picture,
             Field(default=None, description="kind of picture that is drawn by default, if the file has what it needs"),
         ),
     )
@@ -243,10 +276,11 @@ def _system(value) -> str:
 def tagged(form: type[Form]) -> dict[str, type[Form]]:
     """The forms that a key of a scene may have, by the words that distinguish them in errors."""
     forms_of_axes = {"axis by step": StepAxis, "axis by number": CountAxis, "axis of values": ListAxis}
-    for key in ("system", "start"):
+    for key in ("system", "start", "picture"):
         for member in get_args(form.model_fields[key].annotation) if key in form.model_fields else ():
             kind, tag = get_args(member)
-            forms_of_axes[tag.tag] = kind
+            if isinstance(kind, type) and issubclass(kind, Form):
+                forms_of_axes[tag.tag] = kind
     return forms_of_axes
 
 

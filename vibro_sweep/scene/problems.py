@@ -22,7 +22,7 @@ MAX_LINES = 20
 LONGEST_HINT = 300  # letters; a longer one repeats a long value
 OBSERVATIONS = tuple(WORDS)
 
-_TAGS = {"tau as a number", "tau as a word"}
+_TAGS = {"tau as a number", "tau as a word", "picture as a word"}
 _AXIS_FORMS = "{start, stop, step}, {start, stop, num} or {values}"
 _YAML_WORDS = {"NaN": ".nan", "Infinity": ".inf", "-Infinity": "-.inf"}
 
@@ -109,6 +109,7 @@ def _line(item, form, data) -> str:
         return problem(path, entry, _unknown(item["loc"], keys, entry, data))
     if kind == "literal_error":
         words = [word.strip("'") for word in ctx["expected"].replace(" or ", ", ").split(", ")]
+        words = [{"True": "true", "False": "false"}.get(word, word) for word in words]
         also = " or a number (radians)" if "tau as a word" in item["loc"] else ""
         hint = slips.other_form(path, entry) or (slips.number_in_text(entry) if also else None)
         return problem(path, entry, f"{did_you_mean(entry, words)}allowed: {', '.join(words)}{also}{_and(hint)}")
@@ -148,7 +149,7 @@ def _unknown(loc, keys: list[str], entry, data) -> str:
         return f"unknown key; {hint}"
     if place == "sweep" and len(loc) == 2 and slips.has_words(entry):
         return "unknown key; only numbers are swept: make a run for each word"
-    if place == "system" and (hint := slips.of_mass(key, data.get("system")) or slips.of_damping(key, keys)):
+    if place == "system" and (hint := slips.of_damping(key, keys)):
         return f"unknown key; {hint}"
     if place == "system" and (hint := why_not_computed(key)):
         return f"unknown key; {hint}"

@@ -17,12 +17,15 @@ from vibro_sweep.oscillator.linear import Linear
 from vibro_sweep.oscillator.models import DEFAULT
 from vibro_sweep.oscillator.models.declaration import UNITS
 from vibro_sweep.oscillator.oscillator import in_closed_form
+from vibro_sweep.oscillator.other_words import own_name, with_omega
 from vibro_sweep.oscillator.paper_motion import grazing_clearance
 from vibro_sweep.oscillator.stacks import dot, modulus
 from vibro_sweep.oscillator.steady import gap_responses, static_states, steady_amplitudes
 from vibro_sweep.scene.scene import Scene
 from vibro_sweep.tables.coordinates import start
+from vibro_sweep.tables.parameters import CYCLES, FREQUENCY
 
+USUAL = {"offset": 0.0, "m": 1.0}  # numbers that most oscillators have, and that are not stored
 SLAB = 100_000  # points whose numbers are computed at once
 
 
@@ -34,15 +37,16 @@ def attributes(scene: Scene) -> dict[str, Any]:
     paper's; `dynamics` with its `order` and `expand_at`, the initial state (`start_x1`, ...; of a `follow` that of its
     first point) unless it is random or held by a stop, `transient`, `record` and, where there is one, `settle` in
     forcing periods, `section`: `phase`, or `impact` with `section_stop`;
-    `picture` where there is one.
+    `picture` and `picture_units` where there are any.
     """
     system = scene.system
     result: dict[str, Any] = {name: value for name, value in system.numbers.items() if value not in (None, "grazing")}
-    result = {name: value for name, value in result.items() if (name, value) != ("offset", 0.0)}
+    result = {name: value for name, value in result.items() if value != USUAL.get(name)}
     result |= {"tau": system.phase}
     if not depends_on(scene):
         result |= {name: float(value) for name, value in following(scene, ()).items() if name != "tau"}
-    result = {name: value for name, value in result.items() if name not in (*scene.sweep, *dimensions(scene))}
+    known = (*scene.sweep, *map(own_name, scene.sweep), *dimensions(scene))
+    result = {name: value for name, value in result.items() if name not in known}
     result |= {name: _plain(value) for name, value in system.options.items() if value is not None}
     result = {name: value for name, value in result.items() if name not in (UNITS.name, *matrices(scene))}
     if isinstance(system, FunctionModel):
@@ -58,6 +62,7 @@ def attributes(scene: Scene) -> dict[str, Any]:
     result |= {"transient": scene.transient, "record": scene.record, "section": scene.section.kind}
     result |= {} if scene.settle is None else {"settle": scene.settle}
     result |= {"section_stop": scene.section.stop} if scene.section.kind == "impact" else {}
+    result |= {"picture_units": ", ".join(scene.picture_units)} if scene.picture_units else {}
     return result | ({"picture": scene.picture} if scene.picture else {})
 
 
@@ -124,6 +129,13 @@ def _of_built(q: Linear) -> dict[str, np.ndarray]:
 def _free_motion(q: Linear) -> tuple[np.ndarray, np.ndarray]:
     """Amplitude of the gap and its middle, for each oscillator of a stack; NaN where there are none."""
     return modulus(gap_responses(q, steady_amplitudes(q))), dot(q.normal, static_states(q))
+
+
+def angular(scene: Scene) -> dict[str, np.ndarray]:
+    """omega = 2 pi frequency of a sweep over the frequency: (n,) by its name."""
+    if CYCLES.name not in scene.sweep or isinstance(scene.system, FunctionModel):
+        return {}
+    return {FREQUENCY.name: with_omega(scene.sweep)[FREQUENCY.name]}
 
 
 def slabs(scene: Scene) -> Iterator[tuple[slice, ...]]:

@@ -1,6 +1,7 @@
 """From a YAML text to a Scene: everything that a computation needs to know, checked as a whole."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -15,6 +16,7 @@ from vibro_sweep.oscillator.grid import digest, grid
 from vibro_sweep.oscillator.models import MODELS
 from vibro_sweep.oscillator.oscillator import Oscillator
 from vibro_sweep.tables.coordinates import START, start
+from vibro_sweep.tables.parameters import CYCLES, FREQUENCY
 from vibro_sweep.tables.units import NONE, unit_in
 
 from .any_scene import AnyScene, parsed
@@ -23,7 +25,7 @@ from .form import form_of_function, scene_form
 from .problems import SceneError, form_problems, problem
 from .size import size_problems
 from .starts import Start, start_of, start_problems, stops_of
-from .system import kind_of, sweep_of, system_of
+from .system import in_own_words, kind_of, sweep_of, system_of
 from .written import KEYS, ORBIT, changed, progression, start_data, system_data, yaml_of
 
 
@@ -47,7 +49,9 @@ class Section:
 
 @dataclass(frozen=True)
 class Trajectory:
-    """The continuous orbit after the last section point: `samples` times over `periods` forcing periods.
+    """The continuous orbit: `samples` times over `periods` forcing periods.
+
+    begin : "end", after the last section point; or "start", at t = 0 (in YAML `from`)
 
     Examples
     --------
@@ -61,6 +65,7 @@ class Trajectory:
 
     periods: int
     samples: int
+    begin: str = "end"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -73,6 +78,7 @@ class Scene(AnyScene):
     transient, settle, record : forcing periods; settle: None where no orbit goes on after its transient
     observe : words of what is computed
     picture : kind that is drawn by default
+    picture_units : names of units in which numbers are shown, whatever the system's are
     source : the file that it was read from
 
     Examples
@@ -99,6 +105,7 @@ class Scene(AnyScene):
     observe: frozenset[str]
     trajectory: Trajectory | None
     picture: str | None = None
+    picture_units: tuple[str, ...] = ()
 
     @cached_property
     def text(self) -> str:
@@ -127,7 +134,11 @@ class Scene(AnyScene):
             data["section"]["stop"] = self.section.stop
         if self.trajectory:
             data["trajectory"] = {"periods": self.trajectory.periods, "samples": self.trajectory.samples}
-        if self.picture:
+            data["trajectory"] |= {"from": "start"} if self.trajectory.begin == "start" else {}
+        if self.picture_units:
+            kind = {"kind": self.picture} if self.picture else {}
+            data["picture"] = kind | {"units": list(self.picture_units)}
+        elif self.picture:
             data["picture"] = self.picture
         return {key: value for key, value in data.items() if value or key == "observe"}
 
@@ -140,6 +151,11 @@ class Scene(AnyScene):
         """
         self._check_names(changes)
         data = self.data()
+        units = changes.pop("picture_units", self.picture_units)
+        if not (units is None or (isinstance(units, tuple) and not units)):  # in YAML one key with the picture
+            kind = changes.get("picture", self.picture)
+            kind = {} if kind is None else kind if isinstance(kind, Mapping) else {"kind": kind}
+            changes["picture"] = {"units": units} | dict(kind)
         if "sweep" in changes:  # what is swept no longer keeps its first value
             data["system"] = system_data(self.system, ())
         result = scene_of(changed(data, changes), self.name)
@@ -200,8 +216,9 @@ class Scene(AnyScene):
             + ", ".join(f"{value:g}" for value in state.values()),
         }
         section = "t = 0 mod T" if self.section.kind == "phase" else f"impacts on the {self.section.stop} stop"
-        if self.section.kind == "phase" and "omega" in self.sweep and self.system.numbers.get("tau") == "grazing":
-            section += ", at the extreme of the free motion; with tau: 0 at the same phase of the force for all omega"
+        varies = {FREQUENCY.name, CYCLES.name} & self.sweep.keys()
+        if self.section.kind == "phase" and varies and self.system.numbers.get("tau") == "grazing":
+            section += ", at the extreme of the free motion; with tau: 0 at the same phase of the force everywhere"
         lines = [
             " x ".join(axes) or "one point",
             self._system_text(self.sweep),
@@ -211,7 +228,8 @@ class Scene(AnyScene):
         ]
         if self.trajectory:
             samples, periods = self.trajectory.samples, self.trajectory.periods
-            lines.append(f"  trajectory {samples:,} samples over {periods:,} forcing periods")
+            begins = " from t = 0" if self.trajectory.begin == "start" else ""
+            lines.append(f"  trajectory {samples:,} samples over {periods:,} forcing periods{begins}")
         return "\n".join(lines)
 
     def _unit(self, key: str) -> str:
@@ -247,13 +265,16 @@ def scene_of(data: object, name: str) -> Scene:
         written = data | {"system": system_data(made, ())} if isinstance(made, Oscillator) else data
         raise SceneError(name, form_problems(error, scheme, written)) from None
 
-    sweep, problems = sweep_of(form, data.get("sweep"), numbers)
-    system, more = system_of(form, sweep, kind, masses)
-    problems += more + start_problems(form, sweep, system, masses) + combination_problems(form, data, system)
+    form, problems = in_own_words(form)
+    sweep, wrong = sweep_of(form, data.get("sweep"), numbers)
+    system, more = system_of(form, sweep, kind, masses) if not problems else (None, [])
+    problems += wrong + more + start_problems(form, sweep, system, masses) + combination_problems(form, data, system)
     problems += stop_problems(sweep, system) if system is not None else []
     if problems:
         raise SceneError(name, problems)
-    trajectory = form.trajectory and Trajectory(form.trajectory.periods, form.trajectory.samples)
+    trajectory = form.trajectory and Trajectory(
+        form.trajectory.periods, form.trajectory.samples, getattr(form.trajectory, "from")
+    )
     scene = Scene(
         name=Path(name).stem,
         system=system,
@@ -268,7 +289,8 @@ def scene_of(data: object, name: str) -> Scene:
         section=Section(form.section.kind, form.section.stop),
         observe=form.observe,
         trajectory=trajectory,
-        picture=form.picture,
+        picture=getattr(form.picture, "kind", form.picture),
+        picture_units=tuple(getattr(form.picture, "units", None) or ()),
     )
     if problems := size_problems(scene):
         raise SceneError(name, problems)

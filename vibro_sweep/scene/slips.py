@@ -5,9 +5,12 @@ import re
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+import numpy as np
+
 from vibro_sweep.checks.meant import meant
 from vibro_sweep.checks.real import number_of
 from vibro_sweep.oscillator.models import DEFAULT, MODELS
+from vibro_sweep.oscillator.other_words import OTHER_WORDS
 
 PHYSICAL = ("M1", "M2", "K1", "K2", "C1", "C2", "P1", "P2", "Omega", "B", "B0")
 NONDIMENSIONAL = (
@@ -105,7 +108,10 @@ def of_list(path: str, value: object) -> str | None:
     if key.startswith("contact_normal[") and isinstance(value, list):
         return "there is one contact, whose contact_normal is a list of numbers; several are not computed"
     if key == "stop_at" and isinstance(value, list):
-        return "a contact between two masses has the type linear, with contact_normal: [..., -1, 1, ...]"
+        return (
+            f"a contact between two masses is stop_between: {value}; of the type linear it has contact_normal: "
+            "[..., -1, 1, ...]"
+        )
     return None
 
 
@@ -124,7 +130,7 @@ def _start(value: object) -> str:
 def _axis(key: str, value: object) -> str | None:
     if isinstance(value, list) and value and all(isinstance(entry, (int, float)) for entry in value):
         whole = f"{{values: [{', '.join(map(str, value))}]}}" if len(value) < 7 else "{values: [...]}"
-        if len(value) == 3 and _is_number_of_values(*value):
+        if len(value) == 3 and is_number_of_values(*value):
             return f"write {key}: {{start: {value[0]}, stop: {value[1]}, num: {value[2]}}}; three values are {whole}"
         between = f", or {{start: {value[0]}, stop: {value[1]}, num: 101}}" if len(value) == 2 else ""
         return f"write {key}: {whole}{between}"
@@ -133,9 +139,12 @@ def _axis(key: str, value: object) -> str | None:
     return f"write {key}: {AXIS}"
 
 
-def _is_number_of_values(first: float, last: float, num: object) -> bool:
-    """Whether the third of three numbers says how many values are meant: whole, and not between or near the others."""
-    return isinstance(num, int) and num > 2 and num > 10 * max(abs(first), abs(last))
+def is_number_of_values(first: object, last: object, num: object) -> bool:
+    """Whether the third of three numbers says how many values are meant: whole, above 2, and not one that goes on with
+    the first two."""
+    low, high, count = (number_of(value) for value in (first, last, num))
+    whole = isinstance(num, (int, np.integer)) and not isinstance(num, bool)
+    return bool(whole and None not in (low, high) and count > 2 and not min(low, high) <= count <= max(low, high))
 
 
 def of_physical(key: str, system: object) -> str | None:
@@ -151,7 +160,7 @@ def of_physical(key: str, system: object) -> str | None:
     return f"nondimensional numbers are swept: {NONDIMENSIONAL}"
 
 
-HERTZ = ("f", "freq", "frequency", "hz")
+HERTZ = ("f", "freq", "hz")
 
 
 def of_frequency(key: str, value: object) -> str | None:
@@ -180,13 +189,7 @@ def _radian_per_second(system: Mapping[str, Any]) -> float | None:
     return 1.0 if system.get("units") == "SI" else None
 
 
-ONE_MASS = "one mass in kg and N/m is a chain of one, as `vibro-sweep new one_mass_si` writes it"
-
-
-def of_mass(key: str, system: object) -> str | None:
-    """The hint for the mass of a model in which it is 1; None for another key."""
-    kind = system.get("type") if isinstance(system, Mapping) else None
-    return f"the mass of one_mass is 1; {ONE_MASS}" if kind == "one_mass" and key in ("m", "M", "mass") else None
+ONE_MASS = "one mass is one_mass, or a chain of one, as `vibro-sweep new one_mass_si` writes it"
 
 
 def of_damping(key: str, keys: Iterable[str]) -> str | None:
@@ -194,6 +197,21 @@ def of_damping(key: str, keys: Iterable[str]) -> str | None:
     if key not in ("zeta", "xi", "damping_ratio", "Q") or "c" not in keys:
         return None
     return "a damper is c = 2 zeta sqrt(k m); the type linear has modal_damping, a ratio for each mode"
+
+
+def model_meant(system: Mapping[str, Any]) -> str | None:
+    """The model whose keys these are, where some are none of the default's; None where there is no such, or several."""
+    if "type" in system or "physical" in system:
+        return None
+    known = {name: {x.name for x in (*model.numbers, *model.options, *OTHER_WORDS)} for name, model in MODELS.items()}
+    keys = set(map(str, system))
+    needed = {
+        name: {x.name for x in model.numbers if x.default is None and not x.optional and x.each}
+        | {x.name for x in model.options if x.default is None and not x.optional}
+        for name, model in MODELS.items()
+    }
+    fitting = [name for name in MODELS if keys <= known[name] and needed[name] <= keys]
+    return fitting[0] if len(fitting) == 1 and not keys <= known[DEFAULT] else None
 
 
 def has_words(value: object) -> bool:

@@ -20,6 +20,7 @@ class Start:
     kind : "state", "random" or "follow"
     state : (2N,), x1 v1 .. xN vN; of a `follow` that of its first point
     count, seed : of random starts, how many at each point, and the seed
+    box : of random starts, (coordinate, low, high) of those whose range is given
     direction : of a `follow`, "up", "down" or "both"
     rest : nothing is said of the state: at rest, and where zero is behind a stop held by that. A state of zeros that is
         said is never behind one
@@ -38,6 +39,7 @@ class Start:
     state: tuple[float, ...] = ()
     count: int = 1
     seed: int = 0
+    box: tuple[tuple[str, float, float], ...] = ()
     direction: str | None = None
     rest: bool = field(default=False, compare=False)
 
@@ -45,7 +47,7 @@ class Start:
 def start_of(form: Form, masses: int) -> Start:
     """The Start that a form describes."""
     if isinstance(form, RandomStart):
-        return Start("random", count=form.random, seed=form.seed)
+        return Start("random", count=form.random, seed=form.seed, box=tuple((k, *v) for k, v in form.box.items()))
     values, names = tuple(getattr(form, name) for name in state(masses)), state(masses)
     rest = not form.model_fields_set.intersection(names)
     if isinstance(form, FollowStart):
@@ -67,12 +69,19 @@ def start_problems(form: Form, sweep, system: Oscillator | None, masses: int) ->
         if name in form.start.model_fields_set:
             text = "is swept, and would have no effect here; leave it out"
             return [problem(f"start.{name}", getattr(form.start, name), text)]
+    if isinstance(form.start, RandomStart):
+        for key, ends in form.start.box.items():
+            if key not in names:
+                return [problem("start.box", key, f"must be a coordinate: {', '.join(names)}")]
+            if not (len(ends) == 2 and ends[0] < ends[1]):
+                return [problem(f"start.box.{key}", ends, "must be two numbers, the lower end and a greater one")]
     if system is None or form.dynamics == "map":  # points of the map may lie beyond the stops
         return []
     if isinstance(form.start, RandomStart):
         nowhere = system.numbers.get("b", 1.0) == 0 or 0 in sweep.get("b", [])
         text = "random states lie within the clearance b, which is 0 here; give a state"
-        return [problem("start.random", form.start.random, text)] if nowhere else []
+        said = {*names[::2]} <= {*form.start.box}
+        return [problem("start.random", form.start.random, text)] if nowhere and not said else []
     if isinstance(system, FunctionModel):
         return []  # where its stops are is known point by point; states behind one begin at it
     named = [name for name in names if name in swept or name in form.start.model_fields_set]

@@ -8,8 +8,9 @@ from pydantic.config import JsonDict
 
 from vibro_sweep.oscillator.models import DEFAULT, MODELS
 from vibro_sweep.oscillator.models.declaration import OF_STOPS, WHICH_STOPS, Option
-from vibro_sweep.oscillator.physical import PHYSICAL
-from vibro_sweep.tables.parameters import PHASE
+from vibro_sweep.oscillator.other_words import OTHER_WORDS
+from vibro_sweep.oscillator.physical import OMEGA, PHYSICAL
+from vibro_sweep.tables.parameters import CYCLES, PHASE
 from vibro_sweep.tables.quantity import POSITIVE, Parameter
 
 from .fields import TAU, WHICH, Form, Whole, described_field, number
@@ -23,6 +24,13 @@ _UNITS: JsonDict = {
     "anyOf": [
         {"const": "SI"},
         {"type": "array", "items": {"type": "number", "exclusiveMinimum": 0}, "minItems": 3, "maxItems": 3},
+        {
+            "type": "object",
+            "properties": {name: {"type": "string"} for name in ("mass", "length", "time", "force")},
+            "additionalProperties": False,
+            "minProperties": 3,
+            "maxProperties": 3,
+        },
     ]
 }
 
@@ -32,7 +40,8 @@ def _option(quantity: Option) -> tuple[Any, Any]:
         return Any, Field(default=None, description=quantity.text, json_schema_extra=_UNITS)
     kind = {
         "word": Literal[quantity.words] if quantity.words else str,
-        "flag": bool,
+        "choice": Literal[quantity.words] if quantity.words else bool,
+        "pair": list[Whole],
         "whole": Whole,
         "matrix": list[list[float]],
         "vector": list[float],
@@ -50,7 +59,8 @@ PhysicalNumbers = create_model(
     **{
         quantity.name: number(quantity) if quantity.optional or quantity.default is not None else _required(quantity)
         for quantity in PHYSICAL
-    },
+    }
+    | {quantity.name: number(quantity) for quantity in (OMEGA, CYCLES)},
 )
 
 PhysicalSystemForm = create_model(
@@ -88,6 +98,7 @@ def form_of(name: str) -> type[Form]:
         if default
         else f"The model {model.name}: {model.title}. A number that is swept may be left out.",
         **{quantity.name: _number(quantity) for quantity in model.numbers},
+        **{word.name: number(word) for word in OTHER_WORDS},
         **{quantity.name: _option(quantity) for quantity in model.options},
         type=kind,
     )

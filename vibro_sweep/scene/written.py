@@ -8,16 +8,19 @@ from typing import Any
 
 import numpy as np
 
-from vibro_sweep.checks.refusals import shown
+from vibro_sweep.checks.errors import ArgumentError
+from vibro_sweep.checks.refusals import not_allowed, shown
 from vibro_sweep.oscillator.function_model import FunctionModel
 from vibro_sweep.oscillator.models import DEFAULT
 from vibro_sweep.oscillator.oscillator import Oscillator, checked_system
+from vibro_sweep.oscillator.other_words import own_name
 from vibro_sweep.tables.coordinates import START, start, state
 from vibro_sweep.tables.observables import WORDS
 
 from .axes import axis_values
 from .data import InvalidValue, data_from
 from .form import CountAxis
+from .slips import is_number_of_values
 from .starts import Start
 
 KEYS = {dimension: key for key, dimension in START.items()}  # start_x1 -> x1
@@ -65,12 +68,17 @@ def as_data(key: str, value):
             return values
         return dict(zip(state(len(values) // 2), values, strict=True))
     if is_dataclass(value) and not isinstance(value, type):  # a Section or a Trajectory
-        value = {field.name: getattr(value, field.name) for field in fields(value)}
+        names = {"begin": "from"}  # which is no name in Python
+        value = {names.get(field.name, field.name): getattr(value, field.name) for field in fields(value)}
     return data_from(value)
 
 
 def axis_data(axis: object) -> object:
     """An axis as YAML has it."""
+    if isinstance(axis, tuple) and len(axis) == 3 and is_number_of_values(*axis):
+        start, stop, num = axis
+        ways = f"{{'start': {start!r}, 'stop': {stop!r}, 'num': {num!r}}} or np.linspace({start!r}, {stop!r}, {num!r})"
+        raise ArgumentError(not_allowed("axes", axis, f"written as {ways}; three values are a list, {list(axis)!r}"))
     data = data_from(axis)
     data = {"values": data} if isinstance(data, list) else data
     values = data.get("values") if isinstance(data, dict) else None
@@ -88,7 +96,7 @@ def system_data(system: Oscillator, swept) -> dict[str, Any]:
     if isinstance(system, FunctionModel):
         return dict(system.options)
     checked_system(system)
-    kind = {} if system.model.name == DEFAULT else {"type": system.model.name}
+    kind, swept = {} if system.model.name == DEFAULT else {"type": system.model.name}, {own_name(key) for key in swept}
     entries = {
         quantity.name: getattr(system, quantity.name) for quantity in system.model.numbers if quantity.name not in swept
     }
@@ -114,7 +122,8 @@ def progression(values: np.ndarray) -> dict[str, Any]:
 
 def start_data(entries: Start, swept, masses: int) -> dict[str, Any]:
     if entries.kind == "random":
-        return {"random": entries.count, "seed": entries.seed}
+        box = {key: [low, high] for key, low, high in entries.box}
+        return {"random": entries.count, "seed": entries.seed} | ({"box": box} if box else {})
     named = zip(state(masses), start(masses), entries.state, strict=True)
     values = {name: value for name, dimension, value in named if value and dimension not in swept}
     return ({"follow": entries.direction} if entries.kind == "follow" else {}) | values
