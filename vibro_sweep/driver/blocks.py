@@ -33,7 +33,7 @@ class Block(NamedTuple):
     plan: points.Plan
     system: Oscillator
     axes: dict[str, np.ndarray]  # values of the swept numbers in the box, those of the start among them
-    starts: np.ndarray | tuple[int, int]  # (s, 4) for all points; or (count, seed), drawn at each
+    starts: np.ndarray | tuple[int, int, tuple]  # (s, 4) for all points; or (count, seed, box), drawn at each
     from_rest: bool  # at rest, and where zero is behind a stop, held by that
     part: slice  # of the starts
     begun: np.ndarray | None  # (chains, 2 N + 3): where chains go on that another block has begun
@@ -41,6 +41,7 @@ class Block(NamedTuple):
     reverse: bool  # of a `follow`: along falling index
     wanted: frozenset[str]  # datasets
     samples: int
+    from_start: bool  # whether the trajectory begins at t = 0
     expand_at: float | None  # clearance at which the discontinuity mapping is expanded; None: b*
     version: str  # of the program that made it, and is to compute it
 
@@ -114,7 +115,7 @@ def blocks(
     if follow:
         least = min(LANES, most_orbits or LANES)  # so many chains take hardly longer than one
         length = min(shape[0], most_orbits // least) if most_orbits else shape[0]
-    starts = (start.count, start.seed) if start.kind == "random" else np.array([start.state])
+    starts = (start.count, start.seed, start.box) if start.kind == "random" else np.array([start.state])
     common = {
         "shape": shape,
         "plan": plan_of(scene),
@@ -125,6 +126,7 @@ def blocks(
         "follow": follow,
         "wanted": frozenset(quantities(scene)),
         "samples": scene.trajectory.samples if scene.trajectory else 0,
+        "from_start": scene.trajectory is not None and scene.trajectory.begin == "start",
         "expand_at": scene.expand_at,
         "version": version(),
     }

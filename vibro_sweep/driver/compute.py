@@ -119,7 +119,8 @@ def _compute(block: Block) -> dict[str, np.ndarray]:
     if plan.attractors:
         named |= _attractors(arrays["results"], lead)
     if block.samples:
-        named |= trajectories_of(block, table, arrays["results"], workspace, lead)
+        begins = with_velocities(starts, kind.masses, 1 / rate) if block.from_start else None
+        named |= trajectories_of(block, table, arrays["results"], workspace, lead, begins)
         named["status"] = arrays["results"]["status"].reshape(lead)
     named = {name: values for name, values in named.items() if name in block.wanted}
     return in_users_time(named, kind.masses, rate) | ends

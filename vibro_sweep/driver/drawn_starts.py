@@ -5,7 +5,7 @@ import numpy as np
 from vibro_sweep.driver.blocks import Block
 from vibro_sweep.oscillator.grid import linears
 from vibro_sweep.oscillator.linear import rest_state
-from vibro_sweep.tables.coordinates import start
+from vibro_sweep.tables.coordinates import start, state
 
 ATTEMPTS = 100  # at a state with the gap between the stops
 
@@ -27,11 +27,13 @@ def starts_of(block: Block) -> np.ndarray:
 
 
 def _random(block: Block, count: int, masses: int) -> np.ndarray:
-    """States uniform in |x_i - offset| < |b|, |v_i| < omega |b|, with the gap between the stops.
+    """States uniform in |x_i - offset| < |b|, |v_i| < omega |b|, or in the box of the scene, with the gap between the
+    stops.
 
     Of one stop alone with b < 0 these x_i are all behind it, and are drawn as far away on its free side.
     """
-    each, seed = block.starts
+    each, seed, box = block.starts
+    ranges = [(state(masses).index(name), low, high) for name, low, high in box]
     along, stops = block.system.linear.normal, block.system.options.get("stops", "both")
     numbers = {"offset": np.zeros(block.indices.shape)} | block.parameters
     result = np.empty((count, block.part.stop - block.part.start, 2 * masses))
@@ -44,9 +46,12 @@ def _random(block: Block, count: int, masses: int) -> np.ndarray:
         states = np.empty((each, 2 * masses))
         again = np.ones(each, bool)
         for _ in range(ATTEMPTS):
-            drawn = draw.uniform(-1.0, 1.0, (np.count_nonzero(again), 2 * masses)) * abs(b)
+            shares = draw.uniform(-1.0, 1.0, (np.count_nonzero(again), 2 * masses))
+            drawn = shares * abs(b)
             drawn[:, 0::2] += middle
             drawn[:, 1::2] *= omega
+            for i, least, most in ranges:
+                drawn[:, i] = least + (shares[:, i] + 1) / 2 * (most - least)
             states[again] = drawn
             gap = states[:, 0::2] @ along
             again = (gap < low) | (gap > high)

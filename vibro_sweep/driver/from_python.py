@@ -55,7 +55,7 @@ def sweep(
     trajectory: "Trajectory | Mapping[str, Any] | None" = None,
     workers: int | None = None,
     output: str | Path | None = None,
-    progress: Callable[[int, int], None] | None = None,
+    progress: Callable[[int, int], None] | bool | None = None,
     mode: Literal["new", "resume", "overwrite"] = "new",
 ) -> "xarray.Dataset":
     """Sweep one number or two of a system, or of the initial state; the results as an `xarray.Dataset`.

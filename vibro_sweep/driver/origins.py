@@ -29,11 +29,13 @@ from vibro_sweep.driver.windows import rows_in, search_of
 from vibro_sweep.files.pieces import Pieces
 from vibro_sweep.files.reading import sweep_in
 from vibro_sweep.oscillator.oscillator import Oscillator
+from vibro_sweep.oscillator.other_words import own_name
 from vibro_sweep.results.sweep_dataset import Sweep
 from vibro_sweep.scene import Continuation, parse_continuation, parse_scene
 from vibro_sweep.tables.bifurcations import CURVES, WAYS
 from vibro_sweep.tables.file_columns import CHART, SWEEP, WINDOWS
 from vibro_sweep.tables.outcomes import ORBITS, named
+from vibro_sweep.tables.parameters import CYCLES
 
 
 class NoOrbitError(SourceError):
@@ -60,7 +62,7 @@ def source_of(scene: Continuation) -> Source:
         with sweep_in(Path(scene.begin), computes=True) as data:
             its_system, names = _at_special(scene, data)
             run_id = run_id_of(data)
-        free |= {name: its_system.numbers[name] for name in names}
+        free |= {name: getattr(its_system, name) for name in names}
     else:
         return Source(scene.system, "")
     _check_same(scene, its_system.replace(**free), scene.system.replace(**free))
@@ -72,7 +74,8 @@ def attributes_of(scene: Continuation, source: Source) -> dict[str, Any]:
 
     A phase `grazing` that changes with what is followed is not one of them.
     """
-    others = {name: value for name, value in source.system.parameters().items() if name not in scene.parameter}
+    free = {own_name(name) for name in scene.parameter}
+    others = {name: value for name, value in source.system.parameters().items() if name not in free}
     ends = [source.system.replace(**{name: end}) for name, limits in scene.parameter.items() for end in limits]
     held = {k: v for k, v in others.items() if k != "tau" or all(end.parameters()["tau"] == v for end in ends)}
     return {"parameters": list(scene.parameter)} | held | ({"source": source.run_id} if source.run_id else {})
@@ -87,7 +90,7 @@ def seeds_of(scene: Continuation, file: Pieces, pool: Executor | None) -> list[S
     if scene.origin == "sweep":
         orbits = _from_sweep(scene, key, file, pool)
     else:
-        orbits = [orbit for orbit in _orbits(scene, key) if lo <= orbit._solution.family.numbers[key] <= hi]
+        orbits = [orbit for orbit in _orbits(scene, key) if lo <= orbit._solution.family.free[key] <= hi]
     if not orbits:
         of = f" of {scene.begin}" if scene.origin in ("sweep", "branches") else ""
         raise NoOrbitError(f"continue.from.{scene.origin}: no orbit{of} with {key} in {lo:g} .. {hi:g}")
@@ -123,7 +126,8 @@ def _rows(scene: Continuation, data: Sweep) -> list[Row]:
     All rows of a plane whose keys are both followed. Raises ValueError.
     """
     rows = rows_in(data, next(iter(scene.parameter)))
-    numbers = {name: value for name, value in scene.system.parameters().items() if name not in scene.parameter}
+    known = scene.system.parameters() | {CYCLES.name: scene.system.frequency}
+    numbers = {name: value for name, value in known.items() if name not in scene.parameter}
     matching = [row for row in rows if all(numbers.get(name, value) == value for name, value in row.held.items())]
     if not matching:
         held = ", ".join(f"{name} = {numbers[name]!r}" for name in rows[0].held)

@@ -18,11 +18,11 @@ Tell = Callable[[int, int], None]  # (done, total)
 
 
 @contextlib.contextmanager
-def progress_bar(quiet: bool) -> Iterator[Tell | None]:
-    """What shows (done, total); None if quiet."""
+def progress_bar(quiet: bool, always: bool = False) -> Iterator[Tell | None]:
+    """What shows (done, total); None if quiet. always : a bar, wherever it is printed"""
     if quiet:
         yield None
-    elif (notebook := _in_notebook()) or getattr(sys.stderr, "isatty", bool)():
+    elif (notebook := _in_notebook()) or always or getattr(sys.stderr, "isatty", bool)():
         from tqdm import tqdm  # not needed elsewhere
 
         (columns, rows), delay = get_terminal_size(), DELAY if notebook else 0.0
@@ -61,10 +61,10 @@ def _in_notebook() -> bool:
 
 
 @contextlib.contextmanager
-def given_or_bar(progress: Tell | None) -> Iterator[Tell | None]:
-    """The caller's progress; where there is none, the bar, unless notices are silenced."""
-    if progress is not None:
+def given_or_bar(progress: Tell | bool | None) -> Iterator[Tell | None]:
+    """The caller's progress; where there is none, the bar, unless notices are silenced. True: a bar; False: none."""
+    if progress is not None and not isinstance(progress, bool):
         yield progress
         return
-    with progress_bar(not notices.shown()) as bar:
+    with progress_bar(progress is False or (progress is None and not notices.shown()), progress is True) as bar:
         yield bar

@@ -29,7 +29,7 @@ def run(
     output: str | Path,
     workers: int | None = None,
     executor: Executor | None = None,
-    progress: Callable[[int, int], None] | None = None,
+    progress: Callable[[int, int], None] | bool | None = None,
     mode: Literal["new", "resume", "overwrite"] = "new",
     block: int | None = None,
 ) -> RunReport:
@@ -43,7 +43,7 @@ def run(
     workers : of a sweep threads, by default one for each core; of branches and curves processes, by default one; of an
         `executor` that does not say how many it has, its workers
     executor : any `concurrent.futures.Executor` instead
-    progress : called as progress(done, total) in orbits, branches or curves, from this thread; left out: a bar on a
+    progress : True: a bar, False: none; or called as progress(done, total), from this thread; left out: a bar on a
         terminal or in a notebook, unless the level of the logger `vibro_sweep` is WARNING
     mode : "new" (nothing that exists is replaced), "resume" (continue `output` where it stopped) or "overwrite"
     block : of a sweep, points of which a worker computes all starts at once; fewer where memory is short; left out: as

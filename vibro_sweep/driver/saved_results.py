@@ -66,7 +66,7 @@ def _dataset(result: Saved) -> "xarray.Dataset":
             raise ArgumentError("a curve of onsets of sticking has no file: its orbits have no finite list of impacts")
         arrays, kind, shapes, more = curve_arrays.arrays_of(result), CHART, curve_arrays.SHAPES, {}
     else:
-        arrays = branch_arrays.arrays_of(result, result._start.family.numbers[result.parameter])
+        arrays = branch_arrays.arrays_of(result, result._start.family.free[result.parameter])
         kind, shapes = BRANCHES, branch_arrays.SHAPES
         sections = branch_arrays.sections_of(arrays, result.parameter, system)
         more = {f"section_{coordinate}": sections[..., i].ravel() for i, coordinate in enumerate(state(system.masses))}

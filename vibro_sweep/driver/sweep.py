@@ -71,7 +71,7 @@ def run_sweep(
     output: Path,
     workers: int | None = None,
     executor: Executor | None = None,
-    progress: Callable[[int, int], None] | None = None,
+    progress: Callable[[int, int], None] | bool | None = None,
     mode: str = "new",
     block: int | None = None,
 ) -> RunReport:
@@ -79,7 +79,7 @@ def run_sweep(
     data, size = layout.dataset(scene), layout.size(scene)
     with sweep_run(data, following(scene), size, output, mode, provenance(), scene.inputs) as file:
         if isinstance(file, Complete):
-            if progress:
+            if progress and not isinstance(progress, bool):
                 progress(scene.n_points, scene.n_points)
             return _report(file, 0)
         return fill(scene, file, workers, executor, progress, block)
@@ -90,7 +90,7 @@ def fill(
     file: SweepFile | InMemory,
     workers: int | None = None,
     executor: Executor | None = None,
-    progress: Callable[[int, int], None] | None = None,
+    progress: Callable[[int, int], None] | bool | None = None,
     block: int | None = None,
 ) -> RunReport:
     """Compute what is missing of a sweep; arguments and errors as of `run`."""
@@ -126,7 +126,8 @@ def check_how(workers, executor, progress, mode) -> None:
         raise ArgumentError(not_allowed("workers", workers, f"a whole number from 1 to {MOST_WORKERS}"))
     if executor is not None and not callable(getattr(type(executor), "submit", None)):
         raise ArgumentTypeError(not_allowed("executor", executor, "a concurrent.futures.Executor"))
-    check_call("progress", progress, "progress(done, total)", 0, 0)
+    if not isinstance(progress, bool):
+        check_call("progress", progress, "progress(done, total)", 0, 0)
     check_mode(mode)
 
 

@@ -12,16 +12,26 @@ ROOM = 4096  # impacts there is room for at first
 
 
 def trajectories_of(
-    block: Block, table: np.ndarray, results: np.ndarray, workspace: Workspace, lead: tuple[int, ...]
+    block: Block,
+    table: np.ndarray,
+    results: np.ndarray,
+    workspace: Workspace,
+    lead: tuple[int, ...],
+    starts: np.ndarray | None = None,
 ) -> dict[str, np.ndarray]:
-    """The trajectories by dataset name; compiled only for scenes that ask for them. table, results: as of
-    `_compute`."""
+    """The trajectories by dataset name; compiled only for scenes that ask for them.
+
+    table, results : as of `_compute`; starts : (points, starts, 2 N) of trajectories from t = 0, else they begin where
+    the orbits ended
+    """
     from vibro_sweep.engine.trajectory import new_trajectories, run_trajectories
 
     states, shape = 2 * block.system.masses, results.shape
     kept = new_trajectories(shape, block.samples, block.plan.periods, block.samples, block.system.masses)
     room, most, begins = 0, ROOM, results.copy()
-    begins["end"] = at_contact(table.reshape(-1, 1), results["end"], results["resting"])
+    if starts is not None:
+        begins["end"], begins["resting"], begins["relaxed"] = starts, 0, 0
+    begins["end"] = at_contact(table.reshape(-1, 1), begins["end"], begins["resting"])
     while most > room:
         room = most
         run_trajectories(table.reshape(-1), begins, np.empty((1, room, states + 3)), kept, workspace, block.plan)

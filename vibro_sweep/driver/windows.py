@@ -46,7 +46,7 @@ def windows(
     parameter: str | None = None,
     output: str | Path | None = None,
     workers: int | None = None,
-    progress: Callable[[int, int], None] | None = None,
+    progress: Callable[[int, int], None] | bool | None = None,
     mode: Literal["new", "resume", "overwrite"] = "new",
 ) -> Windows:
     """The windows of a sweep: where each of its periodic orbits is stable, and what ends it there.
@@ -58,7 +58,7 @@ def windows(
         a plane each row by itself
     output : the HDF5 file of the windows, if there is to be one; it does not depend on workers or interruptions
     workers : processes, by default one
-    progress : called as progress(done, total) in orbits of the sweep; left out: a bar on a terminal or in a notebook
+    progress : as of `run`, in orbits of the sweep
     mode : of `output`, as of `run`
 
     Returns a list of windows with .lo, .hi, .lower, .upper (special points), .period, .itinerary, .symmetric and
@@ -102,7 +102,7 @@ def run_windows(
     parameter: str | None = None,
     workers: int | None = None,
     executor: Executor | None = None,
-    progress: Callable[[int, int], None] | None = None,
+    progress: Callable[[int, int], None] | bool | None = None,
     mode: str = "new",
 ) -> WindowSearch | None:
     """Write the file of a sweep's windows; arguments and errors as of `windows` and `run`. None: it is complete
@@ -137,7 +137,7 @@ def search_of(
     rows: list[Row],
     file: Pieces | NothingKept,
     pool: Executor | None,
-    progress: Callable[[int, int], None] | None = None,
+    progress: Callable[[int, int], None] | bool | None = None,
 ) -> WindowSearch:
     """The windows of rows; those that `file` has pieces of are not followed again."""
     search, most = WindowSearch(rows), 0
@@ -189,6 +189,7 @@ def _about(data: Sweep, parameter: str) -> dict[str, Any]:
     names = [parameter, *(name for name in data.keys if name != parameter)]
     attributes = {"sweep": run_id_of(data), "parameter": parameter, "parameters": names}
     attributes["sweep_shape"] = np.array([*(data.sizes[name] for name in data.keys), data.sizes.get("start", 1)])
+    attributes |= {key: data.attrs[key] for key in ("picture_units",) if key in data.attrs}
     attributes |= data.held  # of a part of a Dataset: the values of numbers that were swept
     return ragged_dataset.attributes_of(WINDOWS, f"windows of {title}", data.attrs["scene"], attributes)
 

@@ -14,6 +14,7 @@ from vibro_sweep.tables.exponents import RUNNING, periods_read
 from vibro_sweep.tables.file_columns import SWEEP
 from vibro_sweep.tables.observables import DIMENSIONS, SETTLE, TRAJECTORY, asked_for, averaged
 from vibro_sweep.tables.observables import dimensions as dimensions_of
+from vibro_sweep.tables.parameters import CYCLES, FREQUENCY
 from vibro_sweep.tables.quantity import Observable, Quantity
 from vibro_sweep.tables.units import Units, unit_in
 
@@ -82,6 +83,8 @@ def dataset(scene: Scene) -> xarray.Dataset:
     for name, values in axes.items():
         of = scene.system.described.get(name, AXES.get(name))
         coords[name] = variable((name,), values, of, units)
+    for name, values in resolved_numbers.angular(scene).items():
+        coords[name] = variable((CYCLES.name,), values, FREQUENCY, units)
     for name, values in _following(scene).items():
         of = AXES.get(name) or stored_names(scene.system.masses)[name]
         keys = resolved_numbers.dimensions(scene)[name]

@@ -8,10 +8,8 @@ import xarray
 
 from vibro_sweep.checks.refusals import cut, shown
 from vibro_sweep.results.described import described
-from vibro_sweep.tables.file_columns import BRANCHES, CHART, OF_EDGES, RAGGED, WINDOWS, columns
+from vibro_sweep.tables.file_columns import OF_EDGES, RAGGED, RAGGED_KINDS, columns
 from vibro_sweep.tables.quantity import Quantity
-
-KINDS = (BRANCHES, WINDOWS, CHART)
 
 
 def attributes_of(kind: str, title: str, scene: str, attributes: Mapping[str, Any]) -> dict[str, Any]:
@@ -31,7 +29,7 @@ def check(data: xarray.Dataset) -> None:
     """Raise ValueError for branches, windows or curves that do not hold what such a Dataset must: columns, lengths,
     indices, codes."""
     kind = data.attrs.get("kind")
-    if kind not in KINDS:
+    if kind not in RAGGED_KINDS:
         raise ValueError(f"its kind {shown(kind)} is unknown")
     names = [str(name) for name in np.atleast_1d(data.attrs.get("parameters", []))]
     lengths = {str(name): size for name, size in data.sizes.items()}
