@@ -50,7 +50,7 @@ def test_a_picture_in_the_axes_of_the_caller(line, kind):
     fig = Figure()
     other, ax = fig.subplots(1, 2)
     at = None if kind in ("bifurcation", "lyapunov", "impacts") else {"b": 6.55}
-    assert vs.plot(line, kind, ax=ax, at=at) is fig
+    assert vs.plot(line, kind, ax=ax, at=at) is ax
     assert fig.axes == [other, ax] and not other.lines
     alone = vs.plot(line, kind, at=at).axes
     assert lines_of(ax) == lines_of(alone[0]) != []
@@ -63,7 +63,7 @@ def test_a_picture_in_the_axes_of_the_caller(line, kind):
 def test_a_plane_in_the_axes_of_the_caller(variables):
     data = vs.sweep(SYSTEM, {"b": [6.5, 6.6, 6.7], "R": [0.7, 0.8]}, observe=variables, **SHORT)
     ax = Figure().subplots()
-    assert vs.plot(data, ax=ax) is ax.figure
+    assert vs.plot(data, ax=ax) is ax
     assert np.array_equal(ax.images[0].get_array(), vs.plot(data).axes[0].images[0].get_array())
 
 
@@ -71,7 +71,8 @@ def test_a_figure_that_is_drawn_is_the_callers(line):
     """What is drawn into its axes afterwards has its legend in these, keeps their title, and the figure its size."""
     fig = vs.plot(line, "lyapunov", width=85)
     legends, size, title = list(fig.legends), fig.get_size_inches().tolist(), fig.axes[0].set_title("mine").get_text()
-    assert vs.plot(chart(("graze", np.array([[6.5, 6.55, 6.6], [0.0, -0.01, -0.02]]), 1)), ax=fig.axes[0]) is fig
+    curve = np.array([[6.5, 6.55, 6.6], [0.0, -0.01, -0.02]])
+    assert vs.plot(chart(("graze", curve, 1)), ax=fig.axes[0]) is fig.axes[0]
     assert fig.legends == legends and fig.get_size_inches().tolist() == size
     assert fig.axes[0].get_legend() is not None and fig.axes[0].get_title() == title == "mine"
 

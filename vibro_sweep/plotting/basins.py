@@ -5,7 +5,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.patches import Patch
 
 from vibro_sweep.plotting.drawn_sweep import DrawnSweep, Point
-from vibro_sweep.plotting.families import KINDS, describe, kind, named
+from vibro_sweep.plotting.families import KINDS, colours, describe, kind, named
 from vibro_sweep.plotting.figure import Panels
 from vibro_sweep.plotting.kind import picture
 from vibro_sweep.plotting.labels import legend_below
@@ -16,7 +16,6 @@ NAMED = 11  # attractors that the legend has room for
 NEAR = 0.52  # of the plane's width or height, from its middle
 OTHERS = np.inf  # number of all beyond these
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*", "<", ">", "h")  # of the attractors, the largest basin first
-_SHADES = (0.0, 0.45, -0.35, 0.7)  # of attractors of one kind, towards white or black
 
 
 def shows(result: DrawnSweep) -> bool:
@@ -87,16 +86,16 @@ def _attractors(result):
     others = numbers[np.argsort(-counts, kind="stable")][NAMED:]
     label[np.isin(label, others)] = OTHERS
     numbers, counts = np.unique(label[label >= 0], return_counts=True)
-    labels, seen = {}, {}
+    kinds, texts = {}, {}
     for number in sorted(numbers, key=lambda n: (n == 0, n == OTHERS, -counts[numbers == n])):
         members = label == number
         least, of_it = period[members].min(), average[members].mean(axis=0)
-        which, text = str(kind(least, of_it)), describe(least, of_it, result.meeting)
+        kinds[number], text = str(kind(least, of_it)), describe(least, of_it, result.meeting)
         if number in (0, OTHERS):
-            which, text = "unsettled", "others" if number else KINDS["unsettled"][0]
-        seen[which] = seen.get(which, -1) + 1
-        labels[number] = (_shade(KINDS[which][1], seen[which]), f"{text} ({100 * members.mean():.3g} %)")
-    return label, labels
+            kinds[number], text = "unsettled", "others" if number else KINDS["unsettled"][0]
+        texts[number] = f"{text} ({100 * members.mean():.3g} %)"
+    colour_of = colours(kinds)
+    return label, {number: (colour_of[number], text) for number, text in texts.items()}
 
 
 def _kinds(result):
@@ -115,12 +114,6 @@ def _kinds(result):
         )
         for number, share in shares.items()
     }
-
-
-def _shade(colour, n):
-    towards = _SHADES[n % len(_SHADES)]
-    end = 1.0 if towards > 0 else 0.0
-    return tuple((1 - abs(towards)) * part + abs(towards) * end for part in to_rgb(colour))
 
 
 def _rest(result) -> str:

@@ -10,10 +10,23 @@ from vibro_sweep.plotting import multiplier_lines, sweeps
 from vibro_sweep.plotting.drawn_sweep import DrawnSweep, PlotError
 from vibro_sweep.plotting.figure import Panels
 from vibro_sweep.plotting.labels import arrange, legend_below, name_beside
+from vibro_sweep.plotting.measured import draw_measured
 from vibro_sweep.plotting.plot_options import PlotOptions
-from vibro_sweep.plotting.ragged import RaggedFile, sweep_below
+from vibro_sweep.plotting.ragged import RaggedFile, in_units_of, sweep_below
 from vibro_sweep.plotting.scales import scale_of
-from vibro_sweep.plotting.style import DASHES, FAINT, INK, LEFT, SPECIAL, axis_name, limits, special_mark, symbol
+from vibro_sweep.plotting.style import (
+    ARROWS,
+    DASHES,
+    FAINT,
+    INK,
+    LEFT,
+    SPECIAL,
+    axis_name,
+    limits,
+    special_mark,
+    symbol,
+)
+from vibro_sweep.plotting.style import BRANCHES as BRANCH_COLOURS
 from vibro_sweep.tables.bifurcations import ON_CIRCLE
 from vibro_sweep.tables.coordinates import MOST_MASSES, state
 from vibro_sweep.tables.file_columns import BRANCHES
@@ -29,7 +42,8 @@ def variables(file: RaggedFile) -> tuple[str, ...]:
 
 def branches(path, options: PlotOptions) -> Panels:
     """The diagram of a file of branches; over a sweep where the options name one. Raises PlotError."""
-    file = RaggedFile(path, BRANCHES)
+    options = in_units_of(options, path)
+    file = RaggedFile(path, BRANCHES, options.display)
     name = options.variable or "x1"
     if name not in variables(file):
         raise PlotError(f"variable {shown(name)} is not allowed; there are {', '.join(variables(file))}")
@@ -42,8 +56,7 @@ def branches(path, options: PlotOptions) -> Panels:
 
 
 def _draw(ax, file: RaggedFile, name: str, options: PlotOptions) -> None:
-    if options.over is not None:
-        _sweep(ax, options, file, name)
+    below = [] if options.over is None else _sweep(ax, options, file, name)
     values = values_of(file, name)
     together = (
         multiplier_lines.margins(file, _sections(file)) if name == "stop_distance" else np.ones(len(values), bool)
@@ -64,7 +77,10 @@ def _draw(ax, file: RaggedFile, name: str, options: PlotOptions) -> None:
         ax.axhline(1, color=INK, lw=0.5)
         ax.set_ylim(0, min(1.05 * np.nanmax(values), MOST))
     visible = [(kind, place) for kind, place in marks if all(map(_inside, place, (ax.get_xlim(), ax.get_ylim())))]
-    _legend(ax, {kind for kind, _ in visible})
+    draw_measured(
+        ax, options.points, (file.parameters[0], file.stored_unit(file.parameters[0])), (name, file.stored_unit(name))
+    )
+    _legend(ax, {kind for kind, _ in visible}, below)
     arrange(ax.figure)
     visible.sort(key=lambda mark: mark[0] != "sticking")  # where many accumulate, what they lead to is named
     y = np.reshape(values, (len(values), -1))
@@ -159,19 +175,21 @@ def _places(file: RaggedFile) -> np.ndarray:
     return point
 
 
-def _legend(ax, kinds: set[str]) -> None:
+def _legend(ax, kinds: set[str], below: list[Line2D]) -> None:
+    """What is drawn. below : handles of what lies below the branches"""
     handles = [Line2D([], [], color=INK, lw=1.2, label="stable")]
     handles.append(Line2D([], [], color=INK, lw=0.7, ls=DASHES, label="unstable"))
     handles += [
         Line2D([], [], label=f"{SPECIAL[k][0]} {SPECIAL[k][1]}", **special_mark(k)) for k in SPECIAL if k in kinds
     ]
+    handles += below + [line for line in ax.lines if line.get_gid() in ("stop", "measured")]
     legend_below(ax, handles, 5)
 
 
-def _sweep(ax, options: PlotOptions, file: RaggedFile, name: str) -> None:
-    """The section points of a sweep, below everything."""
+def _sweep(ax, options: PlotOptions, file: RaggedFile, name: str) -> list[Line2D]:
+    """The section points of a sweep, below everything; the handles of a legend for them."""
     with DrawnSweep(
-        sweep_below(options.over), PlotOptions(variable=name, xlim=options.xlim, ylim=options.ylim)
+        sweep_below(options.over), PlotOptions(variable=name, xlim=options.xlim, ylim=options.ylim, units=options.units)
     ) as result:
         if list(result.sweep) != file.parameters or name not in sweeps.section_variables(result):
             raise PlotError(f"over: {result.path} is not a sweep over {file.parameters[0]} with section points {name}")
@@ -181,3 +199,10 @@ def _sweep(ax, options: PlotOptions, file: RaggedFile, name: str) -> None:
         for dots in (line for line in ax.lines if line.get_ls() == "None" and not result.follow):
             dots.set_color(FAINT)  # the branches over them are dark
         ax.set_xlim(values[order[0]], values[order[-1]])
+        dots = {"ls": "none", "marker": "o", "markersize": 3}
+        if result.follow:
+            return [
+                Line2D([], [], color=colour, label=f"sweep {ARROWS[way]}", **dots)
+                for way, colour in BRANCH_COLOURS.items()
+            ]
+        return [Line2D([], [], color=FAINT, label="sweep", **dots)]

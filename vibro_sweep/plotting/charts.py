@@ -12,7 +12,7 @@ from vibro_sweep.plotting.drawn_curves import Drawn, chart_of, draw, frame_of, h
 from vibro_sweep.plotting.drawn_sweep import DrawnSweep, PlotError
 from vibro_sweep.plotting.figure import Panels
 from vibro_sweep.plotting.plot_options import PlotOptions
-from vibro_sweep.plotting.ragged import RaggedFile, sweep_below
+from vibro_sweep.plotting.ragged import RaggedFile, in_units_of, sweep_below
 from vibro_sweep.plotting.relative import axis_label, check_relative
 from vibro_sweep.tables.bifurcations import CODIMENSION_TWO, CURVES
 from vibro_sweep.tables.file_columns import CHART
@@ -24,7 +24,8 @@ NAMED = 14  # points of codimension two that are named over a plane
 def chart(path: str | Path, options: PlotOptions) -> Iterator[Panels]:
     """The chart of a file of curves, over a plane where the options name one, which is read while it is drawn. Raises
     PlotError."""
-    file = RaggedFile(path, CHART)
+    options = in_units_of(options, path)
+    file = RaggedFile(path, CHART, options.display)
     if not len(file["branch_type"]):
         raise PlotError(f"{file.name}: nothing to show, it has no curves")
     if options.over is not None:

@@ -8,7 +8,7 @@ from matplotlib.collections import LineCollection, PolyCollection
 
 from vibro_sweep.oscillator.catalogue import BY_NAME
 from vibro_sweep.plotting.drawn_sweep import DrawnSweep, Point
-from vibro_sweep.plotting.families import KINDS, MARKERS, kind, named
+from vibro_sweep.plotting.families import KINDS, MARKERS, colours, kind, named
 from vibro_sweep.plotting.figure import Panels
 from vibro_sweep.plotting.kind import picture
 from vibro_sweep.plotting.labels import arrange, legend_below, overlap
@@ -27,6 +27,7 @@ class Share(NamedTuple):
     period: int
     share: float
     mean: float  # of x1 over the section points
+    number: float  # in the file, by which it has its colour; 0 where the file does not number attractors
 
 
 def shows(result: DrawnSweep) -> bool:
@@ -75,7 +76,7 @@ def _shares(result, order) -> list[Share]:
             first, least = members[0], int(period[place, members].min())
             which, mean = str(kind(least, average[place, first])), average[place, members, 0].mean()
             known = np.nan_to_num(number[place, first])
-            here.append((known, Share(place, (order[place], first), which, least, share[place, first], mean)))
+            here.append((known, Share(place, (order[place], first), which, least, share[place, first], mean, known)))
         here.sort(key=lambda pair: (rank.index(pair[1].kind), pair[0], pair[1].period, -pair[1].share))
         attractors += [share for _, share in here]
     return attractors
@@ -86,28 +87,34 @@ def _points(ax, result, values, attractors):
     stored = "x1" in result and "phase" not in result
     ax.set_ylabel(("" if stored else "mean of ") + at_section("x1") + result.unit("x1"))
     size = np.clip(60 / np.sqrt(len(values)), 1.5, 6) * (0.5 if stored else 1)
-    for which, (_, colour) in KINDS.items():
-        chosen = [attractor for attractor in attractors if attractor.kind == which and which != "unsettled"]
+    colour_of = _colours(attractors)
+    for which, number in dict.fromkeys((a.kind, a.number) for a in attractors if a.kind != "unsettled"):
+        chosen = [attractor for attractor in attractors if (attractor.kind, attractor.number) == (which, number)]
         y = [result.at_point("x1", Point(a.point, a.point[:1], "")) if stored else [a.mean] for a in chosen]
         x = [np.full(len(points), values[attractor.place]) for attractor, points in zip(chosen, y, strict=True)]
-        if chosen:
-            scale = 1.0 if MARKERS[which] == "." else 0.7  # that one is drawn at half its size
-            dots = {"markersize": scale * size, "markeredgewidth": 0, "rasterized": True}
-            ax.plot(np.concatenate(x), np.concatenate(y), MARKERS[which], color=colour, **dots)
+        scale = 1.0 if MARKERS[which] == "." else 0.7  # that one is drawn at half its size
+        dots = {"markersize": scale * size, "markeredgewidth": 0, "rasterized": True}
+        ax.plot(np.concatenate(x), np.concatenate(y), MARKERS[which], color=colour_of[chosen[0]], **dots)
+
+
+def _colours(attractors) -> dict[Share, tuple | str]:
+    """The colour of each: that of its number in the file, else that of its kind."""
+    by_number = colours({attractor.number: attractor.kind for attractor in attractors if attractor.number > 0})
+    return {attractor: by_number.get(attractor.number, KINDS[attractor.kind][1]) for attractor in attractors}
 
 
 def _stacks(ax, values, attractors):
     """A column for each value, of one part for each attractor; a line between parts of one colour."""
     borders, top = edges(values), np.zeros(len(values))
-    parts, colours, seams = [], [], []
+    parts, facecolours, seams, colour_of = [], [], [], _colours(attractors)
     for before, attractor in itertools.pairwise([None, *attractors]):
         left, right, low = borders[attractor.place], borders[attractor.place + 1], top[attractor.place]
         top[attractor.place] = high = low + attractor.share
         parts.append([(left, low), (right, low), (right, high), (left, high)])
-        colours.append(KINDS[attractor.kind][1])
+        facecolours.append(colour_of[attractor])
         if before and (before.place, before.kind) == (attractor.place, attractor.kind):
             seams.append([(left, low), (right, low)])
-    ax.add_collection(PolyCollection(parts, facecolors=colours, linewidth=0))
+    ax.add_collection(PolyCollection(parts, facecolors=facecolours, linewidth=0))
     ax.add_collection(LineCollection(seams, colors="white", linewidth=0.6))
 
 

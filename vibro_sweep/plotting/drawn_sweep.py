@@ -4,18 +4,21 @@ from typing import NamedTuple
 
 import numpy as np
 
+from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.checks.refusals import shown
 from vibro_sweep.files.file_errors import StoreError
 from vibro_sweep.oscillator.catalogue import OF_A_SYSTEM
 from vibro_sweep.oscillator.stops import NUMBERS, compliance_of
+from vibro_sweep.plotting.measured import draw_measured
 from vibro_sweep.plotting.plot_options import PlotOptions
 from vibro_sweep.plotting.settings import settings_of
 from vibro_sweep.plotting.source import PlotError, sweep_read
 from vibro_sweep.plotting.style import axis_name, equation, in_formula
 from vibro_sweep.tables.coordinates import MOST_MASSES
 from vibro_sweep.tables.exponents import CERTAIN, sign_of
-from vibro_sweep.tables.outcomes import NOT_COMPUTED
-from vibro_sweep.tables.units import shown_unit
+from vibro_sweep.tables.outcomes import NOT_COMPUTED, NOT_SETTLED
+from vibro_sweep.tables.parameters import CYCLES, FREQUENCY
+from vibro_sweep.tables.units import shown_unit, unit_text, without_factor
 
 LONGEST_LINE = 150  # letters of TeX
 
@@ -43,9 +46,10 @@ class DrawnSweep:
 
     def __init__(self, data, options: PlotOptions):
         self.options = options
-        self._open = sweep_read(data)
+        self.measurable: dict[str, None] = {}  # variables of axes in which measured points may lie
+        self._open = sweep_read(data, options.display)
         self._source = self._open.__enter__()
-        self.path = self._source.name
+        self.path, self.display = self._source.name, self._source.display
         try:
             self._read_frame()
             self._chosen = self._nearest(self.options.at)
@@ -66,7 +70,7 @@ class DrawnSweep:
         self.starts = [str(start) for start in starts]
         self.follow = self.starts == ["up", "down"]
         codes = self._with_start(self._source.values("status"))
-        self.done = codes != NOT_COMPUTED
+        self.done, self.unsettled = codes != NOT_COMPUTED, codes == NOT_SETTLED
         try:
             self.settings, self._along, self.significant, valid = settings_of(self._source)
         except OSError as error:
@@ -101,7 +105,15 @@ class DrawnSweep:
         """The unit of a quantity, for the name of an axis; of the gap along a trajectory that of the states."""
         letter = {"gap": "x1", "gap_velocity": "v1"}.get(name, name)
         stored_name = next((key for key in (name, letter, f"trajectory_{letter}") if key in self._source), None)
-        return "" if stored_name is None else shown_unit(self._source.attribute(stored_name, "units"))
+        return "" if stored_name is None else shown_unit(self._source.unit(stored_name))
+
+    def measured_in(self, ax, x: str, y: str) -> bool:
+        """Mark measured points in axes of two numbers, where there are such. Whether there are."""
+        self.measurable |= {y: None}
+        return draw_measured(ax, self.options.points, (x, self._unit_of(x)), (y, self._unit_of(y)))
+
+    def _unit_of(self, name: str) -> str | None:
+        return self._source.unit(name) if name in self._source else None
 
     def axis(self, key) -> str:
         """A swept number as an axis label."""
@@ -138,7 +150,7 @@ class DrawnSweep:
     def _read(self, name, index=()) -> np.ndarray:
         try:
             return self._source.values(name, index=index)
-        except StoreError as error:
+        except (StoreError, ArgumentError) as error:
             raise PlotError(str(error)) from error
         except (OSError, RuntimeError) as error:
             raise PlotError(f"{self.path}: `{name}` cannot be read, it is damaged or closed") from error
@@ -221,6 +233,15 @@ class DrawnSweep:
         """The distance from zero at which an exponent with this standard error differs from zero."""
         return self.significant * np.asarray(error)
 
+    def without_contact(self) -> np.ndarray | None:
+        """Whether the orbits met no stop in their record; bool, shape (*sweep, starts). None: not every contact is
+        counted."""
+        needed = [("impacts" if side in self.rigid else "contacts") for side in self.sides]
+        names = [f"{kind}_{_SIDES[side]}" for kind, side in zip(needed, self.sides, strict=True)]
+        if not all(name in self for name in names):
+            return None
+        return np.all([self.array(name) == 0 for name in names], axis=0)
+
     def is_chaotic(self) -> np.ndarray:
         """Whether lambda_1 > 0 beyond its errors, if they are stored; bool, shape (*sweep, starts)."""
         return self._sign_of(self.array("lyapunov", 0)) > 0
@@ -276,17 +297,30 @@ class DrawnSweep:
     def _numbers(self) -> list[str]:
         """The numbers of the system as equations; without what has its default, and lists as one."""
         equations, lists = [], {}
+        settings = self.settings
+        if CYCLES.name in settings or CYCLES.name in self.sweep:  # in place of omega
+            settings = {name: value for name, value in settings.items() if name != FREQUENCY.name}
         incomplete = {_list_of(key) for key in self.sweep}
         for key, quantity in OF_A_SYSTEM.items():
-            if key in self.settings and quantity.each and _list_of(key) not in incomplete:
-                lists.setdefault(_list_of(key), []).append(self.settings[key])
-            elif key in self.settings and (quantity.default is None or self.settings[key] != quantity.default):
-                equations.append(equation(key, self.settings[key]))
+            if key in settings and quantity.each and _list_of(key) not in incomplete:
+                lists.setdefault(_list_of(key), []).append(settings[key])
+            elif key in settings and (quantity.default is None or settings[key] != quantity.default):
+                factor, unit = self._unit_of_number(key, settings[key])
+                equations.append(f"{equation(key, factor * settings[key] if factor != 1.0 else settings[key])}{unit}")
         for name, values in lists.items():
             if any(value != OF_A_SYSTEM[f"{name}1"].default for value in values):
                 letter = OF_A_SYSTEM[f"{name}1"].symbol.removesuffix("_{1}").removesuffix("{}")
-                equations.append(f"${letter} = {', '.join(in_formula(value, 4) for value in values)}$")
+                factor, unit = self._unit_of_number(f"{name}1", max(values, key=abs))
+                listed = ", ".join(in_formula(factor * value, 4) for value in values)
+                equations.append(f"${letter} = {listed}${unit}")
         return equations
+
+    def _unit_of_number(self, name: str, size: float) -> tuple[float, str]:
+        """What a number in the title is multiplied by, and the unit behind it; one with a factor is none to read."""
+        unit = self._source.unit(name) or ""
+        factor, unit = without_factor(size, unit) if unit[:1].isdecimal() and unit_text(unit) else (1.0, unit)
+        text = unit_text(unit)
+        return factor, f" {text}" if text else ""
 
 
 def _list_of(key: str) -> str:

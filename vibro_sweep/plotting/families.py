@@ -1,6 +1,9 @@
 """Attractors by kind, for the eye: each kind has a colour in all pictures, and mirror images have one each."""
 
+from collections.abc import Mapping
+
 import numpy as np
+from matplotlib.colors import to_rgb
 
 from vibro_sweep.plotting.style import INK, LEFT, NOT_COMPUTED, RIGHT
 from vibro_sweep.tables.observables import averaged
@@ -22,6 +25,7 @@ OF_CONTACTS = {  # the names where all stops are compliant
     "right": "periodic, more contacts on the right",
     "left": "periodic, more contacts on the left",
 }
+SHADES = (0.0, 0.45, -0.35, 0.7)  # of attractors of one kind, towards white or black
 MARKERS = {"free": "o", "right": ">", "left": "<", "even": "D", "aperiodic": "."}
 
 
@@ -36,6 +40,21 @@ def kind(period, average) -> np.ndarray:
         (right > left, "right"),
     ]
     return np.select([where for where, _ in known], [name for _, name in known], "left")
+
+
+def colours(kinds: Mapping[float, str]) -> dict[float, tuple[float, float, float]]:
+    """The colour of each attractor by its number in the file, of which the kinds are given: that of its kind, in shades
+    by rising number. It is the same in all pictures."""
+    seen: dict[str, int] = {}
+    result = {}
+    for number in sorted(kinds):
+        which = kinds[number]
+        seen[which] = seen.get(which, -1) + 1
+        towards = SHADES[seen[which] % len(SHADES)]
+        end = 1.0 if towards > 0 else 0.0
+        red, green, blue = ((1 - abs(towards)) * part + abs(towards) * end for part in to_rgb(KINDS[which][1]))
+        result[number] = (red, green, blue)
+    return result
 
 
 def named(which: str, meeting: str) -> str:

@@ -38,6 +38,7 @@ from vibro_sweep.tables.observables import VARIABLES
 
 _OF_A_POINT = {row.name: row.label for row in VARIABLES if not row.dimensions}
 
+QUIET, UNSETTLED = "#ffffff", "#ffd166"
 CURVES = {"b_star": DASHES, "b_right": DASHES, "b_left": ":"}
 
 
@@ -95,8 +96,13 @@ def _draw(grid, result, maps, overlay) -> None:
         corners = (across, up) if scales == ["linear", "linear"] else np.meshgrid(across, up)
     unit = result.unit(result.options.variable or "lyapunov")
     shown = [np.ma.masked_invalid(values[np.ix_(columns, rows)].T) for _, values in maps]
+    others = [(text, colour, mask[np.ix_(columns, rows)].T) for text, colour, mask in _not_periodic(result)]
     for ax, (draw, _), values in zip(grid, maps, shown, strict=True):
         draw(ax, *corners, values, unit)
+        for _, colour, mask in others:
+            if draw is not _period or not mask.any():
+                continue
+            _image(ax, *corners, np.ma.masked_where(~mask, mask), cmap=ListedColormap([colour]))
         ax.set(xscale=scales[0], yscale=scales[1])
         if ax.get_subplotspec().is_last_row():
             ax.set_xlabel(axis_label(x_key, relative, result.unit(x_key)))
@@ -104,6 +110,7 @@ def _draw(grid, result, maps, overlay) -> None:
             ax.set_ylabel(axis_label(y_key, relative, result.unit(y_key)))
         ax.patch.set(facecolor=NOT_COMPUTED, edgecolor=FAINT, hatch="///")
         ax.set(xlim=result.options.xlim or ax.get_xlim(), ylim=result.options.ylim or ax.get_ylim())
+        result.measured_in(ax, x_key, y_key)
         sticking_marks.cells(ax, result, columns, rows, corners)
         _grazing_curve(ax, result)
         if result.options.windows is not None:
@@ -112,6 +119,9 @@ def _draw(grid, result, maps, overlay) -> None:
             overlay.draw(ax)
     zero = "lyapunov_error" in result and any(draw is _exponent and (values == 0).any() for draw, values in maps)
     more = [_within_errors(result)] if zero else []
+    if any(draw is _period for draw, _ in maps):
+        more += [Patch(facecolor=c, edgecolor=FAINT, label=text) for text, c, mask in others if mask.any()]
+    more += [line for line in grid[0].lines if line.get_gid() == "measured"]
     _legend(grid, any(values.mask.any() for values in shown), result.options, overlay, more)
     arrange(grid[0].figure)
     for ax, (draw, _), values in zip(grid, maps, shown, strict=True):
@@ -222,6 +232,14 @@ def _maps(result):
     if not maps:
         maps.append((_amount(_OF_A_POINT["impact_power"]), shown(result.array("impact_power"))))
     return [shown for shown in maps if np.isfinite(shown[1]).any()] or maps[:1], note
+
+
+def _not_periodic(result) -> list[tuple[str, str, np.ndarray]]:
+    """What cells of a map of periods show in place of one: text, colour, and where, (first key, second key). Of several
+    starts all are so."""
+    quiet = result.without_contact()
+    found = [] if quiet is None else [("no contact", QUIET, quiet.all(axis=-1))]
+    return [*found, ("not settled", UNSETTLED, result.unsettled.all(axis=-1))]
 
 
 def _exponent(ax, x, y, values, unit):

@@ -1,6 +1,6 @@
 """`vibro_sweep.plot`, and the pictures of the command line: which kinds there are, and which one is drawn."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import nullcontext
 from importlib import import_module
 from pathlib import Path
@@ -45,7 +45,7 @@ def plot(
 @overload
 def plot(
     data: "str | Path | xarray.Dataset | Plottable", kind: str | None = None, ax: Axes = ..., **options: Any
-) -> Figure | None: ...
+) -> Axes: ...
 
 
 @names_its_arguments
@@ -64,13 +64,15 @@ def plot(
     windows: "str | Path | xarray.Dataset | Plottable | None" = None,
     over: "str | Path | xarray.Dataset | None" = None,
     relative: bool = False,
+    units: str | Sequence[str] | None = None,
+    points: "str | Path | Mapping[str, Any] | None" = None,
     output: str | Path | None = None,
     overwrite: bool = False,
-) -> Figure | None:
+) -> Figure | Axes:
     """A picture of a file, of a Dataset of `vibro_sweep.open` or `vibro_sweep.sweep`, or of a result: an orbit, a
     branch, a curve or windows; a matplotlib Figure. Of an orbit `width` is an option, and `kind` "contact-force".
 
-    A notebook shows it as the value of a cell. In axes of pyplot, which shows them itself, it is not returned too.
+    A notebook shows it as the value of a cell. Where `ax` is given, that is returned.
     Options have the names that they have on the command line.
 
     kind : by default the first that the data can show
@@ -85,6 +87,9 @@ def plot(
     windows : windows of the sweep, to be shown with it
     over : the sweep over which branches or curves are drawn
     relative : of curves and planes: b in parts of the grazing clearance b*
+    units : names of units in which numbers are shown, whatever the data have, as "mm, Hz"; also `at`, xlim and ylim
+    points : measured points, a CSV file or columns by name, as frequency and x1, in the units of the picture or those
+        of their heads, as "x1 [mm]"; drawn into diagrams and planes whose axes have these names
     output : FILE.png, .jpg, .svg, .pdf or .eps, to which the picture is written as well; .gif or .mp4 of a film
     overwrite : replace an `output` that exists, also one that is not a picture of this program
 
@@ -101,7 +106,15 @@ def plot(
     """
     if is_result(data) and hasattr(data, "sample"):  # an orbit, whose motion is computed as it is drawn
         refused = {"ax": ax, "at": at, "variable": variable, "xlim": xlim, "ylim": ylim, "size": size}
-        refused |= {"dpi": dpi, "windows": windows, "over": over, "relative": relative or None, "output": output}
+        refused |= {
+            "units": units,
+            "points": points,
+            "dpi": dpi,
+            "windows": windows,
+            "over": over,
+            "relative": relative or None,
+            "output": output,
+        }
         for name, value in refused.items():
             if value is not None:
                 raise PlotError(f"{name}: of an orbit `width` and `kind` are the only options; the Figure has more")
@@ -109,7 +122,7 @@ def plot(
     check_type("kind", kind, (str, NoneType), "the name of a kind of picture, or None")
     if ax is not None and not isinstance(ax, Axes):
         raise ArgumentTypeError(not_allowed("ax", ax, "matplotlib axes"))
-    options = PlotOptions(at, variable, xlim, ylim, size, dpi, windows, over, relative, width)
+    options = PlotOptions(at, variable, xlim, ylim, size, dpi, windows, over, relative, width, units, points)
     source = data_of("data", data)  # last: the Dataset of a branch takes longer than all checks
     inputs = [read for read in (source, *options.beside) if isinstance(read, Path)]
     place = None if output is None else file_to_write("output", output)
@@ -119,7 +132,7 @@ def plot(
     ((_, figure),) = _figures(source, None if kind == "all" else kind, options, ax)
     if place is not None:
         save(figure, place, overwrite, inputs)
-    return None if ax is not None and figure.canvas.manager is not None else figure
+    return figure if ax is None else ax
 
 
 def kinds(data: "str | Path | xarray.Dataset") -> list[str]:
@@ -181,10 +194,19 @@ def _figures(
         check(chosen)
         for name in chosen:
             axes = options.draw(KINDS[name].panels(result), ax)
+            _check_measured(result, axes)
             for panel in axes if result.failed else ():
                 text = "all points failed; `vibro-sweep info` says how"
                 panel.text(0.5, 0.55, text, transform=panel.transAxes, ha="center")
             yield name, axes[0].figure
+
+
+def _check_measured(result: DrawnSweep, axes: list[Axes]) -> None:
+    """Raise PlotError where measured points are given and no panel has axes for them."""
+    points = result.options.points
+    if points is not None and not any(line.get_gid() == "measured" for ax in axes for line in ax.lines):
+        names = ", ".join((*result.sweep, *(kind for kind in result.measurable)))
+        raise PlotError(f"points: {points.name} has the columns {', '.join(points.columns)}; axes here are {names}")
 
 
 def check_suffix(output: Path, kind: str | None) -> str | None:
@@ -212,7 +234,8 @@ def _kinds(result: DrawnSweep) -> list[str]:
     if not result.done.any():
         return []
     able = [name for name, kind in KINDS.items() if kind.shows(result)]
-    return sorted(able, key=lambda name: name != result.settings.get("picture"))
+    first = result.settings.get("picture") or ("poincare" if not result.sweep and "phase" in result else None)
+    return sorted(able, key=lambda name: name != first)
 
 
 def _chosen(result: DrawnSweep, kind: str | None) -> list[str]:

@@ -1,7 +1,7 @@
 """Options of a picture besides its kind, with the names that they have in Python and on the command line."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import NoneType
@@ -17,7 +17,9 @@ from vibro_sweep.checks.file_names import checked_path
 from vibro_sweep.checks.real import array_of, number_of
 from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.plotting.figure import Panels, Picture, page, style_of
+from vibro_sweep.plotting.measured import Measured, measured
 from vibro_sweep.plotting.source import PlotError
+from vibro_sweep.tables.units import NAMES, Display, display_of
 
 if TYPE_CHECKING:
     import xarray
@@ -47,9 +49,15 @@ class PlotOptions:
     over: "Path | xarray.Dataset | None" = None
     relative: bool = False
     width: float | None = None
+    units: "str | Sequence[str] | None" = None
+    points: Any = None  # columns by name, or the path of their file
 
     def __post_init__(self) -> None:
         check_type("variable", self.variable, (str, NoneType), "the name of a variable, or None")
+        if self.units is not None and display_of(self.units) is None:
+            raise PlotError(not_allowed("units", self.units, f"names of units, one of a kind, such as {NAMES}"))
+        columns = None if self.points is None or isinstance(self.points, Measured) else measured(self.points)
+        vars(self).update({"points": columns} if columns is not None else {})
         checked: dict[str, Any] = {"at": _place(self.at), "relative": checked_flag("relative", self.relative)}
         checked |= {name: _pair(name, getattr(self, name)) for name in ("xlim", "ylim", "size")}
         if self.dpi is not None and number_of(self.dpi) is None:
@@ -72,6 +80,11 @@ class PlotOptions:
     def replace(self, **changes: Any) -> "PlotOptions":
         """A copy with other values."""
         return replace(self, **changes)
+
+    @property
+    def display(self) -> Display | None:
+        """The units in which numbers are shown; None: those that the data say."""
+        return None if self.units is None else display_of(self.units)
 
     @property
     def beside(self) -> "list[Path | xarray.Dataset]":

@@ -33,8 +33,13 @@ def settings_of(source: Sweep) -> Settings:
         if name in source and name not in source.keys
     }
     significant = source.attribute("lyapunov_error", "significant") if "lyapunov_error" in source else None
-    held = {str(name): coordinate.item() for name, coordinate in source.data.coords.items() if coordinate.ndim == 0}
-    return Settings(source.attrs | held, along, np.nan if significant is None else float(significant), _valid(source))
+    words = {str(name): x.item() for name, x in source.data.coords.items() if x.ndim == 0 and x.dtype.kind not in "if"}
+    return Settings(
+        source.attrs | words | source.held | source.numbers,
+        along,
+        np.nan if significant is None else float(significant),
+        _valid(source),
+    )
 
 
 def _valid(source: Sweep) -> list[int]:

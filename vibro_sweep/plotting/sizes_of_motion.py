@@ -8,16 +8,11 @@ from vibro_sweep.plotting.kind import picture
 from vibro_sweep.plotting.labels import ABOVE
 from vibro_sweep.plotting.spectrum_panel import curve
 from vibro_sweep.plotting.style import ARROWS, BRANCHES, FAINT, INK, LEFT, RIGHT, symbol
-from vibro_sweep.plotting.sweeps import set_reach
+from vibro_sweep.plotting.sweeps import OF_CONTACTS, set_reach, shows_contacts
 from vibro_sweep.tables.coordinates import MOST_MASSES
 
+DASHED = {"up": {"ls": "-"}, "down": {"ls": (0, (4, 2))}}  # where colours tell coordinates apart
 COLOURS = (INK, RIGHT, LEFT, FAINT)
-OF_CONTACTS = {"penetration_max": "largest penetration", "contact_force_max": "largest force"}
-
-
-def shows_contacts(result: DrawnSweep) -> bool:
-    """A sweep over one key; contacts."""
-    return len(result.sweep) == 1 and all(name in result for name in OF_CONTACTS)
 
 
 def shows_energy(result: DrawnSweep) -> bool:
@@ -68,10 +63,16 @@ def _lines(result, subject, height, rows) -> Panels:
                 if result.follow and not style:
                     for i, (way, colour) in enumerate(BRANCHES.items()):
                         curve(ax, values[order], ordinates[:, i], color=colour, label=ARROWS[way])
+                elif result.follow:
+                    for i, (way, dashes) in enumerate(DASHED.items()):
+                        named = {"label": f"{style['label']} {ARROWS[way]}"} if "label" in style else {}
+                        curve(ax, values[order], ordinates[:, i], **style | dashes | named)
                 else:
                     curve(ax, values[order], ordinates, **style or {"color": INK})
             ax.set(ylabel=label)
             ax.set_ylim(bottom=0)
+            for name in styles:
+                result.measured_in(ax, key, name)
             handles, labels = ax.get_legend_handles_labels()
             named = dict(zip(labels, handles, strict=True))  # each start has lines of its own
             if len(named) > 1 and (len(styles) > 1 or ax is axes[0, 0]):

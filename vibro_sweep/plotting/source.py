@@ -5,13 +5,14 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vibro_sweep.checks.errors import ArgumentTypeError, VibroSweepError
+from vibro_sweep.checks.errors import ArgumentError, ArgumentTypeError, VibroSweepError
 from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.files.file_errors import StoreError
 from vibro_sweep.files.opening import open_file
 from vibro_sweep.files.reading import sweep_in
 from vibro_sweep.results.sweep_dataset import Sweep
 from vibro_sweep.tables.file_columns import SWEEP
+from vibro_sweep.tables.units import AS_STORED, Display
 
 if TYPE_CHECKING:
     import xarray
@@ -54,8 +55,8 @@ def name_of(data: "str | Path | xarray.Dataset") -> str:
 
 
 @contextmanager
-def sweep_read(data: "str | Path | xarray.Dataset") -> Iterator[Sweep]:
-    """The sweep of a file or of a Dataset. Raises PlotError where it is missing or no result."""
+def sweep_read(data: "str | Path | xarray.Dataset", display: Display | None = AS_STORED) -> Iterator[Sweep]:
+    """The sweep of a file or of a Dataset, in these units. Raises PlotError where it is missing or no result."""
     if not isinstance(data, (str, Path)):
         if not hasattr(data, "data_vars"):
             raise ArgumentTypeError(not_allowed("data", data, "the path of a file, or a Dataset"))
@@ -63,8 +64,8 @@ def sweep_read(data: "str | Path | xarray.Dataset") -> Iterator[Sweep]:
             raise PlotError("this dataset is not from `vibro_sweep.open` or `vibro_sweep.sweep`: it has no status")
     with ExitStack() as stack:
         try:
-            sweep = stack.enter_context(sweep_in(data, computes=False))
-        except StoreError as error:
+            sweep = stack.enter_context(sweep_in(data, computes=False, display=display))
+        except (StoreError, ArgumentError) as error:
             raise PlotError(str(error)) from error
         if "status" not in sweep:
             raise PlotError(f"{sweep.name} is not from `vibro_sweep.open` or `vibro_sweep.sweep`: it has no status")

@@ -11,7 +11,7 @@ from vibro_sweep.plotting.impact_panel import NONE, impact_counts, there_are
 from vibro_sweep.plotting.kind import picture
 from vibro_sweep.plotting.labels import ABOVE, legend_below
 from vibro_sweep.plotting.scales import in_proportion
-from vibro_sweep.plotting.spectrum_panel import spectrum
+from vibro_sweep.plotting.spectrum_panel import branches, curve, spectrum
 from vibro_sweep.plotting.style import (
     ARROWS,
     BRANCHES,
@@ -33,6 +33,7 @@ from vibro_sweep.tables.coordinates import MOST_MASSES, state
 MANY = 100_000  # from here on single points make a blot, and are counted instead,
 COLUMN = 400  # points (1/72 inch): the width of a diagram, which its values share
 WIDE = 360  # in a picture of so many values; of fewer, each has as much room, and dots lie above each other
+OF_CONTACTS = {"penetration_max": "largest penetration", "contact_force_max": "largest force"}
 GRAZES = {  # the stop, and how it is drawn
     "b_right": (1, (0, (4, 2))),
     "b_left": (-1, (0, (1, 1))),
@@ -47,6 +48,23 @@ def shows_bifurcation(result: DrawnSweep) -> bool:
 def shows_lyapunov(result: DrawnSweep) -> bool:
     """A sweep over one key; lyapunov."""
     return len(result.sweep) == 1 and "lyapunov" in result
+
+
+def shows_contacts(result: DrawnSweep) -> bool:
+    """A sweep over one key; contacts."""
+    return len(result.sweep) == 1 and all(name in result for name in OF_CONTACTS)
+
+
+def force_panel(ax, result, values, order):
+    """The largest force of compliant stops."""
+    force = result.array("contact_force_max")[order]
+    ax.set_ylabel(f"largest\nforce{result.unit('contact_force_max')}")
+    if result.follow:
+        branches(ax, values, force)
+    else:
+        curve(ax, values, force, color=INK)
+    ax.set_ylim(bottom=0)
+    result.measured_in(ax, next(iter(result.sweep)), "contact_force_max")
 
 
 def shows_impacts(result: DrawnSweep) -> bool:
@@ -78,6 +96,8 @@ def bifurcation(result: DrawnSweep) -> Panels:
             panels.append((0.9, impact_counts))
         elif not result.failed and result.rigid:
             note = f"; {NONE}"
+    if shows_contacts(result):
+        panels.append((0.9, force_panel))
     return _stack(result, panels, f"Bifurcation diagram{note}")
 
 
@@ -164,7 +184,7 @@ def mark_grazing(axes, result, low, high):
 def _key(ax, result):
     """Draw the key of the colours above the panel, where it hides no point."""
     handles = [line for line in ax.lines if line.get_gid() == "stop"]
-    handles += [line for line in ax.lines if line.get_gid() == "grazing"]
+    handles += [line for line in ax.lines if line.get_gid() in ("grazing", "measured")]
     if result.follow:
         dots = {"ls": "none", "marker": "o", "markersize": 4}
         both = [Line2D([], [], color=INK, label="both", **dots)] if ax.images else []
@@ -226,6 +246,7 @@ def section(ax, result, values, order):
         _dots(ax, values, points, count, color=INK)
     if name == ("x1" if result.contact_normal is None else "gap") and not at_impact:
         _stop_lines(ax, result, values, order)
+    result.measured_in(ax, next(iter(result.sweep)), name)
 
 
 def _distinct(points, inside, repeats) -> float:

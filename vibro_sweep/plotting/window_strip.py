@@ -60,7 +60,7 @@ def windows(ax, result: DrawnSweep, values, order):
 
 
 def _windows_of(result: DrawnSweep) -> RaggedFile:
-    file = RaggedFile(result.options.windows, WINDOWS)
+    file = RaggedFile(result.options.windows, WINDOWS, result.display)
     if file.sweep != str(result.settings.get("identity", "")) or sorted(file.parameters) != sorted(result.sweep):
         raise PlotError(f"windows: {file.name} has the windows of another sweep than {result.path}")
     return file

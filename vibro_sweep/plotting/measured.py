@@ -1,0 +1,115 @@
+"""Measured points over a diagram or a plane: columns of a CSV file, or of a caller's, by the names of numbers."""
+
+import csv
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from vibro_sweep.checks.file_names import checked_path, read_bytes
+from vibro_sweep.checks.real import array_of
+from vibro_sweep.checks.refusals import cut, not_allowed
+from vibro_sweep.plotting.source import PlotError
+from vibro_sweep.tables.parameters import CYCLES, FREQUENCY
+from vibro_sweep.tables.units import ratio, unit_text
+
+MOST = 10**7  # bytes of a file
+STYLE = {"ls": "none", "marker": "o", "mfc": "none", "mec": "#c2187a", "mew": 0.9, "ms": 4.5, "zorder": 6}
+_HEADED = re.compile(r"([\w*]+)\s*(?:\[(.*)\]|\((.*)\))?")  # frequency [Hz]
+
+
+class Measured:
+    """Columns by name, of one length; each with its unit where its head says one."""
+
+    def __init__(self, name: str, columns: Mapping[str, np.ndarray], units: Mapping[str, str]):
+        self.name, self.columns, self.units = name, columns, units
+
+    def __contains__(self, name: str) -> bool:
+        return name in self.columns or (name in _OTHER and _OTHER[name] in self.columns)
+
+    def values(self, name: str, unit: str | None) -> np.ndarray:
+        """A column in the unit of the picture; omega from a frequency, and the other way round. Raises PlotError."""
+        key = name if name in self.columns else _OTHER[name]
+        values, written = self.columns[key], self.units.get(key)
+        if key != name:  # numbers without a unit of their own are in cycles, or in radians, per unit of time
+            values = values * (2 * np.pi if name == FREQUENCY.name else 1 / (2 * np.pi))
+        elif written is not None and unit is not None:
+            factor = ratio(written, unit)
+            if factor is None:
+                raise PlotError(
+                    f"points: {self.name} has {key} in {written}; it must be in {unit_text(unit) or 'no unit'}"
+                )
+            values = values * factor
+        return values
+
+
+_OTHER = {FREQUENCY.name: CYCLES.name, CYCLES.name: FREQUENCY.name}
+
+
+def measured(points: object) -> Measured:
+    """The columns of a file's path, or of a mapping or table of columns. Raises PlotError."""
+    if isinstance(points, (str, Path)):
+        return _of_file(checked_path("points", points))
+    items = points.items() if isinstance(points, Mapping) or hasattr(points, "items") else None
+    if items is None:
+        raise PlotError(not_allowed("points", points, "the path of a CSV file, or columns by their names"))
+    columns, units = {}, {}
+    for head, column in items:
+        name, unit = _name_and_unit(str(head))
+        values = array_of(column if not hasattr(column, "to_numpy") else column.to_numpy(), 1)
+        if values is None:
+            raise PlotError(f"points: the column {cut(name)} holds other things than numbers")
+        columns[name] = values
+        units |= {name: unit} if unit else {}
+    return _checked("points", columns, units)
+
+
+def _of_file(path: Path) -> Measured:
+    raw = read_bytes(path, MOST + 1)
+    if len(raw) > MOST:
+        raise PlotError(f"points: {path} must be a file of {MOST:.0e} bytes at most")
+    text = raw.decode("utf-8-sig", errors="replace")
+    sample = next((line for line in text.splitlines() if line.strip()), "")
+    delimiter = max(",;\t", key=sample.count)
+    rows = [row for row in csv.reader(text.splitlines(), delimiter=delimiter) if any(map(str.strip, row))]
+    if len(rows) < 2:
+        raise PlotError(f"points: {path} must have a line of names and a line for each point")
+    names, units = zip(*map(_name_and_unit, rows[0]), strict=True)
+    numbers = np.full((len(rows) - 1, len(names)), np.nan)
+    for i, row in enumerate(rows[1:]):
+        for j, word in enumerate(row[: len(names)]):
+            try:
+                numbers[i, j] = float(word.replace(",", ".") if delimiter != "," else word)
+            except ValueError:
+                if word.strip():
+                    raise PlotError(f"points: {path}, line {i + 2}: {cut(word)} is not a number") from None
+    known = {name: unit for name, unit in zip(names, units, strict=True) if unit}
+    return _checked(str(path), dict(zip(names, numbers.T, strict=True)), known)
+
+
+def _name_and_unit(head: str) -> tuple[str, str]:
+    match = _HEADED.fullmatch(head.strip().removeprefix("#").strip())
+    return (match[1], match[2] or match[3] or "") if match else (head.strip(), "")
+
+
+def _checked(name: str, columns: dict[str, np.ndarray], units: dict[str, str]) -> Measured:
+    if len(columns) < 2 or len({len(values) for values in columns.values()}) > 1:
+        raise PlotError(f"points: {name} must have two columns at least, of one length, with names as frequency and x1")
+    return Measured(name, columns, units)
+
+
+def draw_measured(ax: Any, points: Measured | None, x: tuple[str, str | None], y: tuple[str, str | None]) -> bool:
+    """Mark the points in axes of two numbers, each a name and its unit, where there are columns of both. Whether there
+    are."""
+    if points is None or x[0] not in points or y[0] not in points:
+        return False
+    frame = ax.get_xlim(), ax.get_ylim()
+    places = points.values(*x), points.values(*y)
+    ax.plot(*places, label="measured", gid="measured", **STYLE)
+    low, high = np.nanmin(places[1], initial=frame[1][0]), np.nanmax(places[1], initial=frame[1][1])
+    room = 0.02 * (high - low)
+    ax.set_xlim(frame[0])
+    ax.set_ylim(low - room if low < frame[1][0] else frame[1][0], high + room if high > frame[1][1] else frame[1][1])
+    return True
