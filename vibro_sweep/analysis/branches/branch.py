@@ -89,10 +89,10 @@ class Branch(FileResult):
 
     @cached_property
     def points(self) -> "xarray.Dataset":
-        """Dataset over `point`: the parameter, state at t = 0, multipliers, distance, impacts (docs of `columns`)."""
+        """Dataset over `point`, with the parameter as a coordinate: state at t = 0, multipliers, distance, impacts."""
         if self._rows is None:
-            return dataset_from_file(self._arrays, self.parameter)
-        return dataset(self._start, self.parameter, self._frame, self._rows)
+            return dataset_from_file(self._arrays, self.parameter).set_coords(self.parameter)
+        return dataset(self._start, self.parameter, self._frame, self._rows).set_coords(self.parameter)
 
     def orbit(self, point: int) -> PeriodicOrbit:
         """The orbit at a point, as `points` counts them from 0; -1 is the last.
@@ -159,7 +159,7 @@ def continue_orbit(
     if changes_rests(solution, parameter):
         allowed = "another number: an orbit that rests after one impact does so at R = 0"
         raise ArgumentError(not_allowed("parameter", parameter, allowed))
-    lo, hi = checked_interval("bounds", bounds, family.numbers[parameter])
+    lo, hi = checked_interval("bounds", bounds, family.free[parameter])
     step = checked_step(step)
     lo, hi = (in_range(orbit.system, parameter, bound) for bound in (lo, hi))
     check_width("bounds", solution, parameter, lo, hi)
@@ -183,7 +183,7 @@ def continue_orbit(
 def not_followed(orbit: PeriodicOrbit, parameter: str) -> Branch:
     """An orbit whose branch cannot be followed, as a branch of one point."""
     s, frame = orbit._solution, orbit._canonical_frame
-    value = s.family.numbers[parameter]
+    value = s.family.free[parameter]
     end = SpecialPoint("failed", {parameter: value}, orbit, s.multipliers)
     return Branch(parameter, [end], end, end, False, s, frame, row_of(value, s, frame))
 

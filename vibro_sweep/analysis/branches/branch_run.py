@@ -111,7 +111,7 @@ class BranchRun:
     def _fail_behind_last(self) -> SpecialPoint:
         """`failed` at the last point, at which no derivatives are known."""
         s = self._last_solution()
-        at = {self.name: s.family.numbers[self.name]}
+        at = {self.name: s.family.free[self.name]}
         return SpecialPoint("failed", at, orbit_of(self.system.replace(**at), s), s.multipliers)
 
     def _point_before(self, compiled: CompiledStepper) -> Point | None:

@@ -43,7 +43,7 @@ def start_of_run(
         first = None if together else start_of_branch(curve)
     else:
         curve = FreeBranch(solution, (name,), unit, ((lo, hi),), step)
-        first = curve.at(solution.family.numbers[name], 1.0)
+        first = curve.at(solution.family.free[name], 1.0)
     if first is not None and not is_special(first):
         return first
     for length in BESIDE if first is not None else (*BESIDE, *FARTHER):

@@ -42,7 +42,7 @@ def switch(special: SpecialPoint) -> list[PeriodicOrbit]:
     system = special.orbit.system
     name = next(iter(special.parameters))
     orbits = [
-        found_orbit(system.replace(**{name: solution.family.numbers[name]}), solution)
+        found_orbit(system.replace(**{name: solution.family.free[name]}), solution)
         for solution in found
         if solution is not None
     ]
@@ -72,7 +72,7 @@ def _beyond_split(special: SpecialPoint) -> list[Solution | None]:
         curve = branch_through(in_two(solution), name, unit)
         found = (set_apart(curve, length) for length in APART)
         return [next((one.solution for one in found if one is not None and one.solution.real), None)]
-    one, value = without_flights(solution), solution.family.numbers[name]
+    one, value = without_flights(solution), solution.family.free[name]
     for step in (sign * BESIDE * unit / 2**k for k in range(20) for sign in (1, -1)):
         try:
             found = replace(one, family=one.family.replace(**{name: value + step})).corrected()
@@ -106,7 +106,7 @@ def index_in(special: SpecialPoint) -> int:
 def _beside(solution: Solution, name: str, impact: int | None, touching: Solution | None = None) -> Solution | None:
     """The orbit with (without) the grazing impact, a little beside the graze on the side where it exists; `touching` as
     of `graze_at`. That at half the distance lies between the two, or another orbit was found."""
-    value = solution.family.numbers[name]
+    value = solution.family.free[name]
     try:
         graze = graze_at(solution, name, impact, touching)
         target = graze.touching if impact is None else graze.without

@@ -35,7 +35,7 @@ def passed(curve: SolutionCurve, rows: list[Rows], behind: Point | None) -> list
     p = np.concatenate([*(part.p for part in rows), [point.value for point in last]])
     t = np.concatenate([*(part.t for part in rows), *(point.solution.times[None] for point in last)])
     D = np.concatenate([*(part.D for part in rows), *(point.solution.jumps[None] for point in last)])
-    omega = family.linear.omega + curve.oscillators.slopes[0].omega * (p - family.numbers[name])
+    omega = family.linear.omega + curve.oscillators.slopes[0].omega * (p - family.free[name])
     half, speed = start.K // 2, family.linear.omega * start.size_of_gap
     delay = omega[:, None] * (t[:, half:] - t[:, :half]) - start.half_periods * np.pi / 2
     for sigma in signs:

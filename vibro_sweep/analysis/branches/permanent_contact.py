@@ -33,7 +33,7 @@ def permanent_contact(s: Solution, name: str, unit: float) -> PermanentContact |
     q = s.family.linear
     if s.K != 1 or s.sigma != 1 or not s.rests or not s.contacts[0]:
         return None
-    side, last = s.sides[0], s.family.numbers[name]
+    side, last = s.sides[0], s.family.free[name]
     damping, preload = (q.c_high, q.p_high) if side > 0 else (q.c_low, q.p_low)
     leaves_by_force = q.by_force and damping > 0 and not preload > 0  # before it is back at the stop's place
     if leaves_by_force or not q.omega * (s.times[0] + s.P - s.ends[0]) < SHORT:

@@ -16,7 +16,7 @@ def passes(arrays: Arrays, parameter: str, system, s: Solution) -> bool:
     sides."""
     if not _may_pass(arrays, s):
         return False
-    offset = arrays["value"] - s.family.numbers[parameter]
+    offset = arrays["value"] - s.family.free[parameter]
     if len(offset) == 1:  # a branch that could not be followed
         return not offset[0] and alike(point_of(arrays, 0, system), s)
     for i in np.flatnonzero(offset[:-1] * offset[1:] <= 0):

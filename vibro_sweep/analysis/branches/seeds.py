@@ -51,7 +51,7 @@ class Seed(NamedTuple):
 
     def place(self, names: tuple[str, ...]) -> np.ndarray:
         """The values of these parameters."""
-        numbers = family_of(self.system).numbers
+        numbers = family_of(self.system).free
         return np.array([numbers[name] for name in names], float)
 
 

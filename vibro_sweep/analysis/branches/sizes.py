@@ -16,7 +16,7 @@ LEAST = 1e-3  # of what changes the oscillator as a whole: parameters nearer to 
 
 def size_of(solution: Solution, name: str) -> float:
     """The parameter's own size |p|, or near 0, where that says nothing, the least."""
-    return max(abs(solution.family.numbers[name]), least_size(solution, name))
+    return max(abs(solution.family.free[name]), least_size(solution, name))
 
 
 def least_size(solution: Solution, name: str) -> float:

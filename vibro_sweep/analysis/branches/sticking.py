@@ -83,7 +83,7 @@ def _guesses(touching: Solution, index: int) -> list[Chatter]:
 def _onset(guess: Chatter, name: str) -> tuple[SolutionCurve, Place] | None:
     """The onset near a guess, whose impacts are nearer to those of the guess than these to each other."""
     s = guess.solution
-    value, size = s.family.numbers[name], least_size(s, name) / LEAST
+    value, size = s.family.free[name], least_size(s, name) / LEAST
     try:
         curve = SolutionCurve(
             StartingOrbit("sticking", s, state=guess.state), (name,), [(value - size / 2, value + size / 2)]

@@ -15,7 +15,7 @@ def in_range(system, name: str, bound: float) -> float:
 
     if accepted(bound):
         return bound
-    inside = family_of(system).numbers[name]
+    inside = family_of(system).free[name]
     if bound < 0 < inside and accepted(0.0):
         return 0.0
     outside = bound

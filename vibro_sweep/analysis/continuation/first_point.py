@@ -60,11 +60,11 @@ def guess_of(curve: SolutionCurve, solution: Solution | None = None) -> Point | 
     """The start, or another orbit of its branch, as it is; None where the oscillator has no forced motion."""
     s, place = solution or curve.orbit, Point(curve, new_place(curve.K, curve.n))
     q = s.family.linear
-    tau = curve.tau if solution is None else curve.tau_at(s.family.numbers[curve.names[0]])
+    tau = curve.tau if solution is None else curve.tau_at(s.family.free[curve.names[0]])
     place.phases[:], place.jumps[:] = q.omega * s.times + tau, s.jumps / curve.units.speed
     rests = list(s.rests)
     place.jumps[rests] = q.omega * (s.ends - s.times[rests])
-    place.p[: len(curve.names)] = [s.family.numbers[name] for name in curve.names]
+    place.p[: len(curve.names)] = [s.family.free[name] for name in curve.names]
     place.p[THETA] = curve.start.theta
     if not curve.move_to(place):
         return None

@@ -42,12 +42,12 @@ class SolutionCurve:
         q = s.family.linear
         self.units = EventUnits(float(s.size_of_gap), float(q.omega))
         self.tau = float(q.tau)  # by which phases become times: those of the curve do not move with it
-        self._taus = [(s.family.numbers[names[0]], self.tau)]
+        self._taus = [(s.family.free[names[0]], self.tau)]
         self.oscillators = Oscillators(s.family, names, s.half_periods, self.units)
         self.n = 2 * len(q.normal)
         self._take_sides(s.sides)
         planes = self.oscillators.around(self.bounds.mean(axis=1), self.unit / 2) if len(names) > 1 else None
-        self.planes = self._around([s.family.numbers[name] for name in names]) if planes is None else planes
+        self.planes = self._around([s.family.free[name] for name in names]) if planes is None else planes
 
     def _take_sides(self, which: tuple[int, ...]) -> None:
         """Set the stops of the impacts, and what follows from them."""

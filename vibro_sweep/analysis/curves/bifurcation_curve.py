@@ -146,7 +146,7 @@ def bifurcation_curve(
     if values is None or values.shape != (2, 2):
         raise ArgumentError(not_allowed("bounds", bounds, f"((lo, hi), (lo, hi)) of {names[0]} and {names[1]}"))
     limits = [
-        checked_interval(f"bounds.{name}", ends, family.numbers[name])
+        checked_interval(f"bounds.{name}", ends, family.free[name])
         for name, ends in zip(names, values.tolist(), strict=True)
     ]
     system = special.orbit.system

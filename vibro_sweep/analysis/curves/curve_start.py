@@ -41,7 +41,7 @@ def as_special(start: StartingOrbit, names, system, error: float = np.nan) -> Sp
     Its multipliers are not known where an impact has no speed, but for the one that grazes.
     """
     s, stop, impact = start.solution, None, None
-    parameters = {name: float(s.family.numbers[name]) for name in names}
+    parameters = {name: float(s.family.free[name]) for name in names}
     if start.type == "graze":
         (stop, impact), multipliers = stop_and_impact(s, start.index), bare(s, start.index).multipliers
     elif len(slow_impacts(s)):

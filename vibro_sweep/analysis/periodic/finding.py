@@ -12,6 +12,7 @@ from vibro_sweep.analysis.periodic.from_itinerary import from_itinerary
 from vibro_sweep.analysis.periodic.from_state import from_guess, from_state
 from vibro_sweep.analysis.periodic.itinerary import SIDES, word
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
+from vibro_sweep.analysis.single.orbit import simulate
 from vibro_sweep.checks.arguments import checked_count, names_its_arguments
 from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.checks.real import array_of
@@ -21,22 +22,28 @@ from vibro_sweep.oscillator.linear import family_of
 from vibro_sweep.tables.coordinates import checked_state
 
 MOST_PERIODS = 10**6
+FROM_REST = 1000  # periods before a state is taken where none is given
 MOST_IMPACTS = 1000  # of an itinerary: each has thousands of seeds
 
 
 @names_its_arguments
-def periodic_orbit(system, state=None, periods: int = 1, itinerary: str | None = None, guess=None) -> PeriodicOrbit:
+def periodic_orbit(
+    system, state=None, periods: int = 1, itinerary: str | None = None, guess=None, which: int = 0
+) -> PeriodicOrbit:
     """Find a periodic orbit by Newton's method on its impact times and impulses.
 
     Parameters
     ----------
-    state : near the orbit at t = 0 mod T: the orbit simulated from here over `periods` gives the impacts to start from
+    state : near the orbit at t = 0 mod T: the orbit simulated from here over `periods` gives the impacts to start from;
+        by default where an orbit from rest is after 1000 periods
     periods : its period in forcing periods, or a multiple of it
     itinerary : the stops it hits, such as "LR", instead of a state; "" for the orbit without impacts
     guess : [(t, side, v), ...] with it or without: impacts of the whole orbit in order, from any one of them, v the gap
         velocity before.
         Without a guess fixed seeds are tried; the first real orbit with this itinerary counts. With compliant stops a
         few simulations are tried last.
+
+    which : of several orbits with the itinerary, in the order in which seeds lead to them; `.others` says of such
 
     Raises ValueError for arguments that say nothing or contradict each other. `.status` says what fails.
 
@@ -50,6 +57,9 @@ def periodic_orbit(system, state=None, periods: int = 1, itinerary: str | None =
     """
     family = family_of(system)
     periods = checked_count("periods", periods, 1, MOST_PERIODS)
+    which = checked_count("which", which, 0, MOST_IMPACTS)
+    if which and (itinerary is None or guess is not None):
+        raise ArgumentError(not_allowed("which", which, "0 where no itinerary is given, or a guess"))
     sides = None if itinerary is None else _checked_sides(family.linear, itinerary)
     rows = None if guess is None else _checked_guess(family.linear, guess, itinerary)
     if state is not None:
@@ -57,7 +67,10 @@ def periodic_orbit(system, state=None, periods: int = 1, itinerary: str | None =
         if not (sides is None and rows is None):
             raise ArgumentError(not_allowed("state", state, "left out where an itinerary or a guess is given"))
     elif sides is None and rows is None:
-        raise ArgumentError(not_allowed("state", state, "given, or an itinerary or a guess"))
+        orbit = simulate(system, None, FROM_REST)
+        if orbit.status != "ok":
+            raise ArgumentError(not_allowed("state", state, f"given, as an orbit from rest ends with {orbit.status!r}"))
+        state = orbit.section[-1]
     elif rows is None and len(sides) > MOST_IMPACTS:
         raise ArgumentError(not_allowed("itinerary", itinerary, f"of at most {MOST_IMPACTS} impacts without a guess"))
     try:
@@ -66,7 +79,7 @@ def periodic_orbit(system, state=None, periods: int = 1, itinerary: str | None =
         elif rows is not None:
             found = from_guess(system, family, rows, periods)
         else:
-            found = from_itinerary(system, family, sides, periods)
+            found = from_itinerary(system, family, sides, periods, which)
     except ResonanceError:
         return PeriodicOrbit(system, without_orbit(family.linear))
     except TooStiffError:

@@ -1,6 +1,7 @@
 """Periodic orbits that hit their stops in a given order, by Newton's method from fixed seeds."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
@@ -14,6 +15,8 @@ from vibro_sweep.analysis.periodic.seeds_of_rests import evenly, with_rests
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.analysis.periodic.steady_gap import push_of_free_mode, steady_gap
 from vibro_sweep.analysis.single.orbit import simulate
+from vibro_sweep.checks.errors import ArgumentError
+from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.engine.impulses import flights
 from vibro_sweep.engine.impulses.flow import flow
 from vibro_sweep.oscillator.linear import Family, amplitudes, forcing_period
@@ -23,27 +26,41 @@ AT_ONCE = 250  # of them: the orbit may be among the first
 MOMENTS = 24
 ROUNDING = 1e-9  # of the free motion, by which states are kept from rigid stops
 SAME = 1e-7  # relative difference of solutions from two seeds that are one, and in parts of their units
+SAME_ORBIT = 1e-6  # the same of whole orbits
+MORE = 8  # solutions that are looked at beside the first orbit: others of its itinerary may be among them
 STARTS, SETTLING = 12, 300  # of simulations, and their forcing periods: more than those of the orbit
 
 
-def from_itinerary(system, family, sides, periods) -> PeriodicOrbit:
+def from_itinerary(system, family, sides, periods, which: int = 0) -> PeriodicOrbit:
+    """The orbit with this itinerary, of several in the order of the seeds the one that is asked for. Raises
+    ArgumentError where there are not so many."""
     if not sides:
         return from_guess(system, family, [], periods)
     symmetric = family.linear.symmetric and periods % 2 == 1 and is_mirrored(sides)
     kinds = [(-1, periods, sides[: len(sides) // 2])] if symmetric else []
     least = [d for d in repetitions(sides) if periods % d == 0]
-    virtual = None
+    virtual, real, looked = None, [], 0
     kinds = [Solution(family, *kind, np.empty(0)) for kind in [*kinds, (1, 2 * periods, sides)]]
     for start in kinds:
         for found in _with_contacts(start) if family.linear.compliant else _seeded(start):
+            looked += len(real) > which
+            if found is None or looked > MORE:  # the seeds that are tried at once are all looked at
+                if len(real) > which:
+                    break
+                continue
             if virtual is not None and ((not found.rests and _passes_a_stop(found)) or not found.real):
                 continue
             found = found.reduced()
             if least and len(found.whole().sides) != len(sides):
                 continue
-            if found.real and not leans(found):
-                return orbit_of(system, found)
-            virtual = virtual or found
+            if not found.real or leans(found):
+                virtual = virtual or found
+            elif all(not _is_same(found, other) for other in real):
+                real.append(found)
+        if len(real) > which:
+            return replace(orbit_of(system, real[which]), others=len(real) - 1)
+    if real:
+        raise ArgumentError(not_allowed("which", which, f"at most {len(real) - 1}: so many other orbits are found"))
     if np.any(family.linear.restitution(sides) == 0):
         for start in kinds:
             for guess in evenly(start):
@@ -53,6 +70,16 @@ def from_itinerary(system, family, sides, periods) -> PeriodicOrbit:
     simulated = family.linear.compliant and periods <= SETTLING
     attracting = _attracting(system, family, sides, periods) if simulated else None
     return attracting or found_orbit(system, virtual)
+
+
+def _is_same(one: Solution, other: Solution) -> bool:
+    """Whether two solutions are one orbit, or its mirror image half a period later, whichever impact comes first."""
+    if (one.half_periods, one.sigma, one.K) != (other.half_periods, other.sigma, other.K):
+        return False
+    T, units = forcing_period(one.family.linear), np.array([1 / one.family.linear.omega, np.abs(one.jumps).max()])
+    rows = [np.column_stack([s.times % T, s.jumps * np.array(s.sides)]) for s in (one, other)]
+    first, second = (row[np.lexsort(np.round(row / units / SAME_ORBIT).T)] for row in rows)
+    return bool((np.abs(first - second) < SAME_ORBIT * units * 10).all())
 
 
 def _attracting(system, family, sides, periods) -> PeriodicOrbit | None:
@@ -73,7 +100,7 @@ def _attracting(system, family, sides, periods) -> PeriodicOrbit | None:
     return None
 
 
-def _with_contacts(start: Solution) -> Iterator[Solution]:
+def _with_contacts(start: Solution) -> Iterator[Solution | None]:
     """Orbits of an oscillator with compliant stops: from rigid ones, and that with the contacts of the free motion."""
     yield from contact_seeds(start, _seeded)
     if (found := from_free_motion(start)) is not None:
@@ -95,8 +122,8 @@ def _passes_a_stop(s: Solution) -> bool:
     return bool(max(out[:, 0].max() - q.high, q.low - out[:, 0].min()) > 1e-9 * size)
 
 
-def _seeded(start: Solution):
-    """Solutions from fixed seeds, different ones, those whose impulses push first."""
+def _seeded(start: Solution) -> Iterator[Solution | None]:
+    """Solutions from fixed seeds, different ones, those whose impulses push first; None after so many seeds."""
     e, K, q = EventEquations.of(start), start.K, start.family.linear
     rng, T, sides = np.random.default_rng(0), forcing_period(q), np.array(start.sides)
     stops, pushed = np.abs(q.stop(start.sides)).max(), abs(push_of_free_mode(q)) * start.P / K
@@ -121,5 +148,6 @@ def _seeded(start: Solution):
         pushing = np.all(-sides * ends[:, K:] > 0, axis=1)
         pulling.append((ends[~pushing], changes[~pushing]))
         yield from new(ends[pushing], changes[pushing])
+        yield None
     for found in pulling:
         yield from new(*found)

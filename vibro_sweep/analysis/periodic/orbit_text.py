@@ -18,6 +18,9 @@ def of_orbit(orbit: "PeriodicOrbit") -> str:
     lines = [f"<PeriodicOrbit {motion(orbit)}"]
     if len(orbit.multipliers):
         lines.append(f"multipliers {multipliers_text(orbit.multipliers)}")
+    if orbit.others:
+        many = "another orbit has" if orbit.others == 1 else f"{orbit.others} other orbits have"
+        lines.append(f"{many} this itinerary: which=1 of periodic_orbit gives the next one")
     return repr_text([*lines, system_text(orbit.system)])
 
 

@@ -35,6 +35,7 @@ class PeriodicOrbit(Result):
     """A periodic orbit of a linear oscillator between stops. Times are absolute and nondimensional.
 
     status : "ok", or why it is not an orbit (`tables.outcomes.ORBITS`); numbers then are those found, or empty
+    others : other orbits with its itinerary that were seen beside it; `which=` of `periodic_orbit` gives them
 
     Examples
     --------
@@ -51,6 +52,7 @@ class PeriodicOrbit(Result):
     status: str
     _solution: Solution | None = field(repr=False, default=None)
     _frame: tuple[int, int] | None = field(repr=False, default=None)  # (first impact, periods to shift by)
+    others: int = 0
 
     def __repr__(self) -> str:
         return orbit_text.of_orbit(self)

@@ -70,9 +70,11 @@ def softened(family: Family, found: Solution) -> Solution | None:
     return one
 
 
-def contact_seeds(start: Solution, seeded: Callable[[Solution], Iterator[Solution]]) -> Iterator[Solution]:
-    """Orbits with these contacts, from those with rigid stops that are found from fixed seeds."""
+def contact_seeds(
+    start: Solution, seeded: Callable[[Solution], Iterator[Solution | None]]
+) -> Iterator[Solution | None]:
+    """Orbits with these contacts, from those with rigid stops that are found from fixed seeds; None as of `seeded`."""
     for found in seeded(replace(start, family=rigid(start.family))):
-        one = softened(start.family, found)
-        if one is not None:
+        one = None if found is None else softened(start.family, found)
+        if found is None or one is not None:
             yield one

@@ -26,6 +26,15 @@ class Exponents(np.ndarray):
         result.error, result.residual = np.array(error, float), float(residual)
         return result
 
+    def __repr__(self) -> str:
+        """The exponents with their standard errors."""
+        if self.ndim != 1 or self.error.shape != self.shape:
+            return repr(np.asarray(self))
+        pairs = zip(np.asarray(self).tolist(), self.error.tolist(), strict=True)
+        return f"Exponents([{', '.join(f'{value:.10g} +- {error:.1g}' for value, error in pairs)}])"
+
+    __str__ = __repr__
+
     def __array_finalize__(self, source: object) -> None:
         self.error = getattr(source, "error", np.empty(0))
         self.residual = getattr(source, "residual", np.nan)

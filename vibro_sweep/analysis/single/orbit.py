@@ -22,6 +22,7 @@ from vibro_sweep.engine.halting import interruptible
 from vibro_sweep.engine.motion import orbits
 from vibro_sweep.engine.one_system import Engine, is_paper, plan_of
 from vibro_sweep.engine.records import new_results, starts_at
+from vibro_sweep.oscillator.linear import rest_state
 from vibro_sweep.oscillator.oscillator import Oscillator, checked_system
 from vibro_sweep.oscillator.own_time import rate_of, with_velocities
 from vibro_sweep.tables.coordinates import checked_state
@@ -195,12 +196,12 @@ class Orbit(Result):
 
 
 @names_its_arguments
-def simulate(system: Oscillator, state: ArrayLike, periods: int, start_time: float = 0.0) -> Orbit:
+def simulate(system: Oscillator, state: ArrayLike | None = None, periods: int = 100, start_time: float = 0.0) -> Orbit:
     """Simulate one orbit of the impact oscillator (3), (4).
 
     Parameters
     ----------
-    state : (2N,), x1 v1 .. xN vN at `start_time`
+    state : (2N,), x1 v1 .. xN vN at `start_time`; None: at rest, as a sweep begins
     periods : forcing periods, counted from the first section t = 0 mod T at or after `start_time`
 
     Raises TypeError where `system` is not a System; ValueError for a state that is not a state or is behind a rigid
@@ -216,7 +217,7 @@ def simulate(system: Oscillator, state: ArrayLike, periods: int, start_time: flo
     ('ok', 203, array([ 2.383407, -2.120291,  1.31271 ,  0.13647 ]))
     """
     checked_system(system)
-    state, periods = checked_state(state, system.masses), checked_count("periods", periods, 0, MOST_PERIODS)
+    state, periods = _state(system, state), checked_count("periods", periods, 0, MOST_PERIODS)
     begins = number_of(start_time)
     if begins is None or not abs(begins) <= LATEST * system.period:
         allowed = f"a number of at most {LATEST} forcing periods: beyond, times resolve no motion"
@@ -251,6 +252,14 @@ def simulate(system: Oscillator, state: ArrayLike, periods: int, start_time: flo
         section,
         engine,
     )
+
+
+def _state(system: Oscillator, state: ArrayLike | None) -> np.ndarray:
+    """A state, checked; by default at rest."""
+    if state is not None:
+        return checked_state(state, system.masses)
+    places = rest_state(system.linear)
+    return np.stack([places, np.zeros_like(places)], -1).ravel()
 
 
 def _rate_of(system: Oscillator) -> float:
@@ -289,8 +298,11 @@ def _carried(engine: Engine, section: np.ndarray) -> _Carried:
 
 
 @names_its_arguments
-def lyapunov(system: Oscillator, state: ArrayLike, transient: int = 1000, record: int = 10_000) -> Exponents:
-    """Lyapunov spectrum (2N,) of the orbit from `state` at t = 0: descending, natural logarithm, per unit time.
+def lyapunov(
+    system: Oscillator, state: ArrayLike | None = None, transient: int = 1000, record: int = 10_000
+) -> Exponents:
+    """Lyapunov spectrum (2N,) of the orbit from `state` at t = 0, by default from rest: descending, natural logarithm,
+    per unit time.
 
     An array that has `.error`, the standard errors (2N,), and `.residual`, the sum minus its exact value, too.
     -inf for dimensions lost by sticking, NaN where the orbit fails. A periodic orbit (period at most record/2) gives
@@ -307,7 +319,7 @@ def lyapunov(system: Oscillator, state: ArrayLike, transient: int = 1000, record
     (True, True)
     """
     checked_system(system)
-    state, transient = checked_state(state, system.masses), checked_count("transient", transient, 0)
+    state, transient = _state(system, state), checked_count("transient", transient, 0)
     record = checked_count("record", record, 1, MAX_RECORD)
     engine = Engine(system, rate=_rate_of(system))
     engine.checked(state)

@@ -47,7 +47,7 @@ def probe(task: Probe) -> Arrays:
 
 
 def _probed(task: Probe) -> tuple[str, Seed | None]:
-    here = float(task.system.family.numbers[task.parameter])
+    here = float(task.system.family.free[task.parameter])
     bounds = (min(here, task.beyond), max(here, task.beyond))
     try:
         orbit = periodic_orbit(task.system, task.state, task.period)

@@ -58,7 +58,7 @@ def _found(job: Job) -> Arrays | str:
         branch = stable_stretch(chosen, job.parameter, job.bounds)
     except ValueError:  # an orbit of hundreds of impacts, which rounding does not let Newton's method correct
         return "failed"
-    value = chosen._solution.family.numbers[job.parameter]
+    value = chosen._solution.family.free[job.parameter]
     if not holds(branch, value, SLACK * (job.bounds[1] - job.bounds[0])):
         return "not_settled"
     return arrays_of(branch, value)

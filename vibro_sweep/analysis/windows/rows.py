@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from vibro_sweep.analysis.single.orbit import simulate
 from vibro_sweep.checks.arguments import checked_word
 from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.checks.refusals import cut
@@ -73,15 +74,13 @@ def chosen_key(data: Sweep, system, parameter: str | None) -> str:
 
 
 def check_data(data: Sweep) -> None:
-    """Raise ValueError for what is not a sweep, or has no section states at t = 0 mod T of the oscillator itself."""
+    """Raise ValueError for what is not a sweep, or has no section states of the oscillator itself."""
     if data.attrs.get("kind", SWEEP) != SWEEP:
         raise ArgumentError(f"holds {cut(str(data.attrs['kind']))}, not a sweep")
     if data.attrs.get("type") == BUILD:
         raise ArgumentError("type: 'build' is not allowed; the function that made the oscillators is not in the file")
     if data.attrs.get("dynamics", "flow") != "flow":
         raise ArgumentError("dynamics: 'map' is not allowed; windows are those of the oscillator itself, 'flow'")
-    if data.attrs.get("section", "phase") != "phase":
-        raise ArgumentError("section: 'impact' is not allowed; windows start from states at t = 0 mod T, kind: phase")
     if "period" not in data or "x1" not in data:
         raise ArgumentError("observe: has no 'section'; windows start from the section states of a sweep")
     if "status" not in data:
@@ -100,9 +99,14 @@ def rows_of(data: Sweep, system, key: str) -> Iterator[Row]:
     swept = data.keys
     others = [name for name in swept if name != key]
     lead = [*others, key, *(["start"] if "start" in data.dims("period") else [])]
-    last = [data.values(name, lead)[..., -1] for name in state(system.masses)]
+    at_impacts = "phase" in data
+    points = [data.values(name, lead) for name in state(system.masses)]
+    last = [_last(values) if at_impacts else values[..., -1] for values in points]
     arrays = {"states": np.stack(last, axis=-1), "period": data.values("period", lead)}
+    phases = data.values("phase", lead) if at_impacts else None
     arrays["reason"] = _reasons(data.values("status", lead), arrays["period"])
+    if phases is not None:
+        arrays["phases"] = _last(phases)
     if "start" not in lead:
         arrays = {name: np.expand_dims(values, len(lead)) for name, values in arrays.items()}
     axes = {name: data.values(name) for name in (*others, key)}
@@ -111,7 +115,30 @@ def rows_of(data: Sweep, system, key: str) -> Iterator[Row]:
         held = {name: float(axes[name][i]) for name, i in zip(others, place, strict=True)}
         there = system.replace(**{name: value for name, value in held.items() if name in system.described})
         parts = {name: values[place][order] for name, values in arrays.items()}
-        yield Row(there, key, held, swept.index(key), axes[key][order].astype(float), order, **parts)
+        values = axes[key][order].astype(float)
+        if at_impacts:
+            parts["states"] = _at_section(there, key, values, parts["states"], parts.pop("phases"), parts["reason"])
+        yield Row(there, key, held, swept.index(key), values, order, **parts)
+
+
+def _last(points: np.ndarray) -> np.ndarray:
+    """Of section points (..., n) at impacts, NaN behind the last one, that one; NaN where there is none."""
+    known = np.isfinite(points)
+    place = np.where(known.any(-1), points.shape[-1] - 1 - np.argmax(known[..., ::-1], axis=-1), 0)
+    return np.take_along_axis(points, place[..., None], -1)[..., 0]
+
+
+def _at_section(system, key: str, values: np.ndarray, states: np.ndarray, phases: np.ndarray, reason: np.ndarray):
+    """The states (values, starts, 2N) at the next t = 0 mod T after impacts at these phases; where there was none, or
+    the orbit is not valid, they stay as they are."""
+    result, bad = states.copy(), (REASON_CODES["not_computed"], REASON_CODES["failed"])
+    for i, j in np.argwhere(np.isfinite(phases) & ~np.isin(reason, bad)).tolist():
+        there = system.replace(**{key: float(values[i])})
+        orbit = simulate(there, states[i, j], 1, phases[i, j] / there.omega)
+        result[i, j] = orbit.section[0]
+    lost = np.isnan(result).any(-1) & (reason == 0)
+    reason[lost] = REASON_CODES["not_settled"]  # without an impact the file does not say where the orbit is
+    return np.where(np.isfinite(result), result, 0.0)
 
 
 def _reasons(status: np.ndarray, period: np.ndarray) -> np.ndarray:
