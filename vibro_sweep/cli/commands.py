@@ -24,7 +24,7 @@ from .console import (
     messages,
     say,
 )
-from .options import key_and_value, number_in, positive
+from .options import display_option, key_and_value, number_in, positive
 from .options import output as output_option
 from .options import scene_file as scene_argument
 from .usage import called
@@ -47,6 +47,10 @@ Resume = Annotated[bool, typer.Option("--resume", help="Continue an interrupted 
 Overwrite = Annotated[bool, typer.Option("--overwrite", help="Replace an existing file.")]
 DataFiles = Annotated[list[Path], typer.Argument(metavar="FILE.h5", exists=True, dir_okay=False)]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON, an object a file, each in a line.")]
+Units = Annotated[
+    str | None,
+    typer.Option(metavar="NAMES", help="Units of what is shown, as mm,Hz; by default those of the file."),
+]
 Quiet = Annotated[bool, typer.Option("--quiet", help="Print nothing but warnings and errors.")]
 
 
@@ -87,6 +91,9 @@ def run(
     quiet: Quiet = False,
 ):
     """Compute a scene and write its HDF5 file."""
+    if output is not None and output.suffix.lower() in (".csv", ".txt", ".dat"):
+        table = f"`vibro-sweep table FILE.h5 -o {output}` writes a table"
+        raise InputError(f"-o {output}: `run` writes HDF5, {output.stem}.h5; {table}")
     unnamed = output is None and scene_file.is_fifo()
     output = output or Path(f"{scene_file.stem}.h5")
     computation = Computation(output, workers, scheduler, resume, overwrite, plot, quiet, ("run", str(scene_file)))
@@ -119,6 +126,7 @@ def windows_command(
     resume: Resume = False,
     overwrite: Overwrite = False,
     plot: Annotated[bool, typer.Option("--plot", help="Draw the sweep with its windows, next to the file.")] = False,
+    units: Units = None,
     as_json: Json = False,
     quiet: Quiet = False,
 ):
@@ -127,14 +135,14 @@ def windows_command(
     A window is an interval on which one periodic orbit is stable. Each takes 15 to 300 ms, and each chaotic point 4000
     periods more, so a plane takes minutes. The sweep's file stays as it is.
     """
-    output = output or Path(f"{file.name.removesuffix('.h5')}.windows.h5")
+    output, display = output or Path(f"{file.name.removesuffix('.h5')}.windows.h5"), display_option(units)
     command = ("windows", str(file), *(("--parameter", parameter) if parameter else ()))
     computation = Computation(output, workers, scheduler, resume, overwrite, plot, quiet, command)
     computation.announce()
     computation.check_outputs([file])
-    compute_windows(computation, file, parameter, as_json)
+    compute_windows(computation, file, parameter, display, as_json)
     if plot:
-        _draw(file, computation.picture, None, overwrite, quiet or as_json, windows=output)
+        _draw(file, computation.picture, None, overwrite, quiet or as_json, windows=output, units=units)
 
 
 @app.command("plot")
@@ -192,6 +200,13 @@ def plot_command(
     relative: Annotated[
         bool, typer.Option("--relative", help="Of curves and planes: b in parts of the grazing clearance b*.")
     ] = False,
+    units: Units = None,
+    points: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE.csv", exists=True, dir_okay=False, help="Measured points: columns as frequency and x1."
+        ),
+    ] = None,
     overwrite: Annotated[
         bool,
         typer.Option("--overwrite", help="Replace an existing file, also one that is not a picture of this program."),
@@ -206,7 +221,7 @@ def plot_command(
         options[name] = pair and tuple(number_in(f"--{name}", text) for text in pair)
     for name, text in (("width", width), ("dpi", dpi)):
         options[name] = text and number_in(f"--{name}", text)
-    options |= {"windows": windows, "over": over, "relative": relative}
+    options |= {"windows": windows, "over": over, "relative": relative, "units": units, "points": points}
     from vibro_sweep.plotting import default_name
 
     if output is not None and len(files) > 1:
@@ -219,13 +234,14 @@ def plot_command(
 
 
 @app.command()
-def info(files: DataFiles, as_json: Json = False):
+def info(files: DataFiles, units: Units = None, as_json: Json = False):
     """Say what files hold, how they were made, how far they are.
 
     Also how accurate they say they are.
     """
     from vibro_sweep.files.file_errors import StoreError
 
+    display = display_option(units)
     if as_json:
         from .as_json import description_of
     else:
@@ -233,7 +249,7 @@ def info(files: DataFiles, as_json: Json = False):
 
     def describe(file: Path) -> None:
         with input_errors(StoreError):
-            text, damaged = description_of(file)
+            text, damaged = description_of(file) if as_json else description_of(file, display)
         say(text if as_json or file is files[0] else f"\n{text}")
         if damaged:
             raise SystemExit(BAD_INPUT)
@@ -242,8 +258,42 @@ def info(files: DataFiles, as_json: Json = False):
 
 
 @app.command()
-def check(scene_file: SceneFile):
-    """Validate a scene; say what it computes, its size and time.
+def table(
+    file: DataFile,
+    output: Annotated[Path | None, output_option("FILE.csv", "the terminal")] = None,
+    variable: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME", help="What to write, such as x1; may be repeated."),
+    ] = None,
+    units: Units = None,
+    overwrite: Overwrite = False,
+):
+    """Write what a file holds as a table, with commas between the numbers.
+
+    Of a sweep a row for each orbit; with --variable x1 for each of its section points. Of branches a row for each
+    point, of windows for each window.
+    """
+    from vibro_sweep.files.file_errors import StoreError
+
+    from .table import table_of
+
+    if output is not None and output.exists() and not overwrite:
+        raise InputError(f"-o {output}: exists; --overwrite replaces it, or name another file")
+    with input_errors(StoreError):
+        text = table_of(file, variable or (), display_option(units))
+    if output is None:
+        say(text.removesuffix("\n"))
+    else:
+        output.write_text(text, encoding="utf-8")
+        say(str(output))
+
+
+@app.command()
+def check(
+    scene_file: SceneFile,
+    quick: Annotated[bool, typer.Option("--quick", help="Compute and compile nothing: the time is not told.")] = False,
+):
+    """Validate a scene; say what machine it describes, what it computes, its size and time.
 
     Orbits are measured for that: kernels that are not there yet are compiled first.
     """
@@ -255,9 +305,12 @@ def check(scene_file: SceneFile):
     from vibro_sweep.driver.compute import RunError
     from vibro_sweep.driver.cost import estimate
 
+    from .described_machine import description
     from .summaries import cost_text
 
-    say(f"{scene_file}: {scene}")
+    say("\n".join([f"{scene_file}: {scene}", *description(scene)]))
+    if quick:
+        return
     all_is_imported()
     with input_errors(RunError), messages(quiet=False):
         cost = estimate(scene) if isinstance(scene, Scene) else None
@@ -265,18 +318,21 @@ def check(scene_file: SceneFile):
 
 
 @app.command()
-def grazing(scene_file: SceneFile):
+def grazing(scene_file: SceneFile, units: Units = None):
     """Theorem 1: the clearance and phase of the grazing.
 
     There the non-impacting steady motion just touches its stops. If the scene sweeps what they depend on: the curve.
     """
+    from vibro_sweep.checks.errors import ArgumentError
     from vibro_sweep.scene import SceneError, load_scene
 
     from .summaries import grazing_of
 
-    with input_errors(SceneError):
+    display = display_option(units)
+    with input_errors(SceneError, ArgumentError):
         scene = load_scene(scene_file)
-    say(grazing_of(scene))
+        text = grazing_of(scene, display)
+    say(text)
 
 
 @app.command()

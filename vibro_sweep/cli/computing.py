@@ -1,11 +1,13 @@
 """What commands that compute a file have in common: where it may go, how to continue it, progress, what is printed."""
 
 import shlex
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+
+from vibro_sweep.tables.units import Display
 
 from . import interrupt
 from .console import InputError, all_is_imported, input_errors, messages, say
@@ -92,7 +94,8 @@ def compute(computation: Computation, scene) -> bool:
 
     of_sweep = isinstance(scene, Scene)
     with computation.under_way(ValueError) as (executor, progress):
-        report = run.run(scene, computation.output, computation.workers, executor, progress, computation.mode)
+        tell = progress and _described_first(scene, progress)
+        report = run.run(scene, computation.output, computation.workers, executor, tell, computation.mode)
     if of_sweep and not computation.quiet:
         from .summaries import advice_on, summary
 
@@ -104,7 +107,25 @@ def compute(computation: Computation, scene) -> bool:
     return of_sweep and bool(report.bad)
 
 
-def compute_windows(computation: Computation, file: Path, parameter: str | None, as_json: bool) -> None:
+def _described_first(scene, progress: Callable[[int, int], None]) -> Callable[[int, int], None]:
+    """The progress of a run, before which it says what machine it computes; not where all is computed already."""
+    said = False
+
+    def tell(done: int, total: int) -> None:
+        nonlocal said
+        if not said and done < total:
+            from .described_machine import description
+
+            say("\n".join(description(scene)))
+        said = True
+        progress(done, total)
+
+    return tell
+
+
+def compute_windows(
+    computation: Computation, file: Path, parameter: str | None, display: Display | None, as_json: bool
+) -> None:
     """Compute the windows of a sweep's file and print their table."""
     from vibro_sweep.driver.windows import run_windows
 
@@ -118,14 +139,14 @@ def compute_windows(computation: Computation, file: Path, parameter: str | None,
         with input_errors(StoreError):
             say(description_of(computation.output)[0])
     elif not computation.quiet:
-        say_tables(computation.output)
+        say_tables(computation.output, display)
 
 
-def say_tables(output: Path) -> None:
+def say_tables(output: Path, display: Display | None = None) -> None:
     """Print what a file of branches, curves or windows holds; of a long table the beginning and the end."""
     from .info import tables
 
-    lines = tables(output)
+    lines = tables(output, display)
     left_out = len(lines) - FIRST - LAST
     if left_out > 0:
         lines[FIRST:-LAST] = [f"  ... {left_out:,} lines more: vibro-sweep info {shlex.quote(str(output))}"]

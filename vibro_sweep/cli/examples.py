@@ -31,7 +31,10 @@ def purpose(scene: Path) -> str:
 
 
 def write_example(name: str) -> list[Path]:
-    """Copy a scene into the current folder, with the schema if there is none; the paths. Raises ExampleError."""
+    """Copy a scene into the current folder, with that whose system it has, and the schema, if there are none.
+
+    Returns the paths that are written. Raises ExampleError.
+    """
     known = examples()
     name = name.removesuffix(".yaml")
     if name not in known:
@@ -48,11 +51,13 @@ def write_example(name: str) -> list[Path]:
         if scene.is_file() and scene.read_text(encoding="utf-8", errors="replace") == text:
             return [scene]  # it is that copy
         raise ExampleError(f"{scene} exists; move it away, or work in another folder") from None
+    others = [name for name in re.findall(r"^system: (\w+)\.yaml$", text, re.M) if not Path(f"{name}.yaml").exists()]
+    written = [scene, *(path for name in others for path in write_example(name))]
     schema = Path(SCHEMA)
     if schema.exists():
-        return [scene]
+        return written
     schema.write_text(schema_text() + "\n", encoding="utf-8")
-    return [scene, schema]
+    return [*written, schema]
 
 
 def schema_text() -> str:

@@ -10,6 +10,8 @@ import numpy as np
 import xarray
 
 from vibro_sweep.checks.arguments import MAX_COUNT
+from vibro_sweep.checks.errors import ArgumentError
+from vibro_sweep.cli.described_machine import quiet_line
 from vibro_sweep.cli.ragged_tables import curves_table, special_table, windows_table
 from vibro_sweep.files.file_errors import StoreError
 from vibro_sweep.files.opening import open_file
@@ -17,33 +19,40 @@ from vibro_sweep.files.reading import open_whole
 from vibro_sweep.files.verifying import REMEDY, damage
 from vibro_sweep.oscillator.contact_laws.compliant import LAW as COMPLIANT
 from vibro_sweep.results import ragged_dataset
+from vibro_sweep.results.declared_units import display_in, shown_dataset
 from vibro_sweep.results.sweep_dataset import Sweep
 from vibro_sweep.tables.exponents import CERTAIN, periods_to_go, sign_of
 from vibro_sweep.tables.file_columns import CHART, SWEEP, WINDOWS
 from vibro_sweep.tables.observables import GAP
 from vibro_sweep.tables.outcomes import NOT_COMPUTED, NOT_SETTLED, REASONS, VALID, named, status_of
+from vibro_sweep.tables.units import Display, shown_unit, unit_text
 
 STRUCK = ("impacts_right", "impacts_left", "sticking_time")
 PRESSED = ("contacts_right", "contacts_left", "contact_time")
 
 
-def tables(path: str | Path) -> list[str]:
-    """The tables of a file of branches or windows, line by line. Raises StoreError."""
+def tables(path: str | Path, display: Display | None = None) -> list[str]:
+    """The tables of a file of branches or windows, line by line, in these units. Raises StoreError."""
     with open_whole(Path(path)) as data:
-        return _tables(data)
+        return _tables(data, display)
 
 
-def description_of(path: Path) -> tuple[str, bool]:
+def description_of(path: Path, display: Display | None = None) -> tuple[str, bool]:
     """The lines about a file, and whether they say `damaged`: what is in it, how it was made, how far it is, and its
-    stated accuracy. Raises StoreError."""
+    stated accuracy. Raises StoreError.
+
+    display : the units of numbers; None: those that its scene says
+    """
     with open_file(path) as data:
         try:
-            return _examined(data, path)
+            return _examined(data, path, display)
+        except ArgumentError as error:
+            raise StoreError(f"{path}: {error}") from None
         except (OSError, RuntimeError, ValueError, KeyError, TypeError) as error:
             raise StoreError(f"{path} is damaged ({error})") from None
 
 
-def _examined(data: xarray.Dataset, path: Path) -> tuple[str, bool]:
+def _examined(data: xarray.Dataset, path: Path, display: Display | None) -> tuple[str, bool]:
     lines = [f"{path}: {data.attrs['title']}"]
     sealed, lost = data.encoding["sealed"], damage(data)
     checked = f"damaged      {lost}; {REMEDY}" if lost else "checksums    all hold"
@@ -53,11 +62,11 @@ def _examined(data: xarray.Dataset, path: Path) -> tuple[str, bool]:
     made_by += _record(data.attrs["provenance"], data.attrs["history"])
     if data.attrs["kind"] != SWEEP:
         ragged_dataset.check(data)
-        return "\n".join([*lines, *_tables(data), checked, *made_by]), False
-    sweep = Sweep(data, str(path))
+        return "\n".join([*lines, *_tables(data, display), checked, *made_by]), False
+    sweep = Sweep(data, str(path), display=display)
     for name in sweep.keys:
-        axis = sweep.values(name)
-        lines.append(f"  {name:<10} {axis[0]:g} .. {axis[-1]:g} ({len(axis):,} values)")
+        axis, unit = sweep.values(name), unit_text(sweep.unit(name))
+        lines.append(f"  {name:<10} {axis[0]:g} .. {axis[-1]:g}{f' {unit}' if unit else ''} ({len(axis):,} values)")
     if "start" in sweep.dims("status"):
         lines.append(f"  {'start':<10} {sweep.sizes['start']} at each point")
     lines.append("datasets")
@@ -66,6 +75,7 @@ def _examined(data: xarray.Dataset, path: Path) -> tuple[str, bool]:
     if not data.encoding["complete"] and NOT_COMPUTED not in sweep.values("status"):
         lines.append("unfinished   its last line is missing; `--resume` completes it")
     if not lost:
+        lines += quiet_line(sweep)
         lines += [*_untouched(sweep), *_turning(sweep), *_exponents(sweep), *_accuracy(sweep)]
     return "\n".join([*lines, *made_by]), bool(lost)
 
@@ -92,10 +102,12 @@ def _dataset(name: str, shape: tuple[int, ...], description: str) -> str:
     return f"  {name:<18} {' x '.join(map(str, shape)) or 'one':<16} {description}"
 
 
-def _tables(data: xarray.Dataset) -> list[str]:
+def _tables(data: xarray.Dataset, display: Display | None) -> list[str]:
     """The tables of a file of branches or windows."""
+    data = shown_dataset(data, display_in(data) if display is None else display)
     arrays = {str(name): variable.values for name, variable in data.data_vars.items()}
-    parameters = [str(name) for name in np.atleast_1d(data.attrs["parameters"])]
+    names = [str(name) for name in np.atleast_1d(data.attrs["parameters"])]
+    parameters = {name: f"{name}{shown_unit(data[name].attrs.get('units'))}" for name in names}
     if data.attrs["kind"] == WINDOWS:
         return windows_table(arrays, parameters)
     if data.attrs["kind"] == CHART:
@@ -187,9 +199,11 @@ def _accuracy(sweep: Sweep) -> list[str]:
             unknown = f"{total - residuals.size:,} of {total:,} orbits"
             lines.append(f"             not known where dimensions are lost: {unknown}")
     if "contact_error" in sweep and (missed := _finite(sweep.values("contact_error"))).size:
-        lines.append(f"             impacts were found within {missed.max():.2g} of the stop")
+        unit = unit_text(sweep.unit("contact_error"))
+        lines.append(f"             impacts were found within {f'{missed.max():.2g} {unit}'.strip()} of the stop")
     if "min_impact_speed" in sweep and (speeds := _finite(sweep.values("min_impact_speed"))).size:
-        lines.append(f"             slowest impact {speeds.min():.2g}: the nearest to a graze")
+        unit = unit_text(sweep.unit("min_impact_speed"))
+        lines.append(f"             slowest impact {f'{speeds.min():.2g} {unit}'.strip()}: the nearest to a graze")
     return lines
 
 

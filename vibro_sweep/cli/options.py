@@ -7,6 +7,8 @@ from pathlib import Path
 import typer
 from typer.models import OptionInfo
 
+from vibro_sweep.tables.units import NAMES, Display, display_of
+
 from .console import InputError
 
 
@@ -58,6 +60,15 @@ def executor_of(scheduler: str | None) -> contextlib.AbstractContextManager:
             raise InputError(f"--scheduler {scheduler}: {error}") from None
 
     return connected()
+
+
+def display_option(names: str | None) -> Display | None:
+    """The units of --units; None: those of the file."""
+    if names is None:
+        return None
+    if (display := display_of(names)) is None:
+        raise InputError(f"--units {names}: write names of units, one of a kind, such as {NAMES}, with commas")
+    return display
 
 
 def key_and_value(text: str) -> tuple[str, float]:

@@ -14,10 +14,11 @@ from vibro_sweep.tables.outcomes import EDGES, REASONS
 LONGEST_WORD = 12  # letters of an itinerary that is printed as it is
 
 
-def windows_table(arrays: Mapping, parameters: list[str]) -> list[str]:
+def windows_table(arrays: Mapping, parameters: Mapping[str, str]) -> list[str]:
     """A line for each window, then what its ends are and what no window covers.
 
-    parameters : the one along which they reach, and those that were swept beside it, which a column has
+    parameters : of the number along which they reach, and of those that were swept beside it, which a column has, the
+        name and how it is headed
     """
     parameter, *held = parameters
     first = np.append(0, np.cumsum(arrays["branch_row_size"]))
@@ -25,15 +26,15 @@ def windows_table(arrays: Mapping, parameters: list[str]) -> list[str]:
     words = [_short(word) for word in _words(arrays)]
     ends = ("ends with", "point")
     names = ("from", *ends, "to", *ends, "period", "impacts", "symmetric", "orbits", "other attractor")
-    rows = [(*held, *names)]
+    rows = [(*(parameters[name] for name in held), *names)]
     for w, branch in enumerate(np.asarray(arrays["window_branch"]).tolist()):
         special = int(lower[w]), int(upper[w])
-        both = [word for s in special for word in (_number(arrays, s), ending(arrays, s), str(s))]
+        both = [word for s in special for word in (_number(arrays, s), _end_of_window(arrays, s), str(s))]
         kind = [str(arrays["window_period"][w]), words[branch], "yes" if arrays["window_symmetric"][w] else "no"]
         orbits = [str(arrays[name][w]) for name in ("window_orbits", "window_other_attractor")]
         row = [f"{arrays[name][first[branch]]:.10g}" for name in held]
         rows.append((*row, *both, *kind, *orbits))
-    lines = [f"windows in {parameter}: {len(rows) - 1}", *_aligned(rows)]
+    lines = [f"windows in {parameters[parameter]}: {len(rows) - 1}", *_aligned(rows)]
     named = Counter(TYPES[code].name for code in np.asarray(arrays["special_type"])[np.append(lower, upper)].tolist())
     lines.append("ends         " + _counted(named))
     reasons = np.asarray(arrays["orbit_reason"])
@@ -60,7 +61,7 @@ def _families(arrays: Mapping) -> list[str]:
     return lines
 
 
-def _unvisited(arrays: Mapping, parameters: list[str]) -> list[str]:
+def _unvisited(arrays: Mapping, parameters: Mapping[str, str]) -> list[str]:
     """A line for each stretch of a window on which the sweep shows other attractors only, with a start."""
     parameter, *held = parameters
     words, branches = _words(arrays), np.asarray(arrays["window_branch"])
@@ -68,7 +69,8 @@ def _unvisited(arrays: Mapping, parameters: list[str]) -> list[str]:
     names = [
         name for name in arrays if name.startswith("unvisited_") and name.removeprefix("unvisited_") not in UNVISITED
     ]
-    rows = [(*held, "from", "to", "period", "impacts", "values", parameter, "start")]
+    headed = [parameters[name] for name in held]
+    rows = [(*headed, "from", "to", "period", "impacts", "values", parameters[parameter], "start, as a scene has it")]
     for u, w in enumerate(np.asarray(arrays["unvisited_window"]).tolist()):
         lo, hi, at = (f"{arrays[f'unvisited_{name}'][u]:.10g}" for name in ("lo", "hi", "at"))
         start = ", ".join(f"{name.removeprefix('unvisited_')}: {float(arrays[name][u])!r}" for name in names)
@@ -82,13 +84,13 @@ def _unvisited(arrays: Mapping, parameters: list[str]) -> list[str]:
     )
 
 
-def special_table(arrays: Mapping, parameters: list[str]) -> list[str]:
+def special_table(arrays: Mapping, parameters: Mapping[str, str]) -> list[str]:
     """A line for each special point of each branch."""
     endings = [ending(arrays, s) for s in range(len(np.asarray(arrays["special_type"])))]
     return _special(arrays, "branch", "branches", parameters, endings)
 
 
-def curves_table(arrays: Mapping, parameters: list[str]) -> list[str]:
+def curves_table(arrays: Mapping, parameters: Mapping[str, str]) -> list[str]:
     """A line for each special point of each curve; then how many curves of which type."""
     kinds = [CURVES[code] for code in np.asarray(arrays["branch_type"]).tolist()]
     names = [CODIMENSION_TWO[code].name for code in np.asarray(arrays["special_type"]).tolist()]
@@ -102,11 +104,18 @@ def curves_table(arrays: Mapping, parameters: list[str]) -> list[str]:
 
 
 def _special(
-    arrays: Mapping, single: str, many: str, parameters: list[str], types: list[str], of: list[str] | None = None
+    arrays: Mapping,
+    single: str,
+    many: str,
+    parameters: Mapping[str, str],
+    types: list[str],
+    of: list[str] | None = None,
 ) -> list[str]:
     """A line for each special point, of one of these types; of each curve the type that it is a curve `of`."""
     words = [_short(word) for word in _words(arrays)]
-    rows = [("point", single, *([] if of is None else ["of"]), *parameters, "type", "period", "impacts", "error")]
+    rows = [
+        ("point", single, *([] if of is None else ["of"]), *parameters.values(), "type", "period", "impacts", "error")
+    ]
     values = np.asarray(arrays["special_value"])
     for s, branch in enumerate(np.asarray(arrays["special_branch"]).tolist()):
         place = [
@@ -132,6 +141,11 @@ def ending(arrays: Mapping, special: int) -> str:
     elif kind == "boundary":
         more.append("not followed beyond")
     return kind + (f" ({', '.join(more)})" if more else "")
+
+
+def _end_of_window(arrays: Mapping, special: int) -> str:
+    """The end of a window in words: open where nothing is known of what lies beyond."""
+    return ending(arrays, special).replace("boundary", "open")
 
 
 def _number(arrays: Mapping, special: int) -> str:

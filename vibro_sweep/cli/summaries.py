@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vibro_sweep.checks.errors import ArgumentError
+from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.oscillator.contact_laws import LAWS
 from vibro_sweep.oscillator.contact_laws.contact_law import ContactLaw
 from vibro_sweep.oscillator.grazing import Grazing, grazing
@@ -12,9 +14,12 @@ from vibro_sweep.oscillator.linear import static_state
 from vibro_sweep.oscillator.models import MODELS
 from vibro_sweep.oscillator.models.declaration import Model, Option
 from vibro_sweep.oscillator.oscillator import Oscillator
+from vibro_sweep.oscillator.quiet import quiet
 from vibro_sweep.tables.coordinates import state as names
 from vibro_sweep.tables.outcomes import STATUSES
+from vibro_sweep.tables.parameters import CYCLES, FREQUENCY
 from vibro_sweep.tables.quantity import Parameter
+from vibro_sweep.tables.units import AS_STORED, Display, display_of, names_of, shown_unit, unit_in, unit_text
 
 if TYPE_CHECKING:
     from vibro_sweep.driver.cost import Estimate
@@ -22,40 +27,58 @@ if TYPE_CHECKING:
     from vibro_sweep.scene import Continuation, Scene
 
 
-def grazing_of(scene: "Scene | Continuation") -> str:
-    """The output of `grazing`: of a sweep of one number on which the graze depends the curve."""
+def grazing_of(scene: "Scene | Continuation", display: Display | None = None) -> str:
+    """The output of `grazing`: of a sweep of one number on which the graze depends the curve; of one also where the gap
+    is just filled. display : the units of lengths and of the swept number; None: those that the scene says"""
     from vibro_sweep.scene import Scene
     from vibro_sweep.scene.resolved_numbers import depends_on
 
     along, system = depends_on(scene) if isinstance(scene, Scene) else (), scene.system
+    if display is None:
+        display = display_of(getattr(scene, "picture_units", ())) or AS_STORED
+    if display.units and system.units is None:
+        raise ArgumentError(not_allowed("--units", names_of(display), "left out: the system has no units"))
     if len(along) == 1:
-        return _grazing_curve(system, along[0], scene.sweep[along[0]].tolist())
-    lines = [grazing_text(grazing(system), system)]
+        return _grazing_curve(system, along[0], scene.sweep[along[0]], display)
+    lines = [grazing_text(grazing(system), system, display)]
     if along:
         first = ", ".join(f"{key} = {getattr(system, key)!r}" for key in along)
         lines.insert(0, f"at the first point of the sweep: {first}")
     return "\n".join(lines)
 
 
-def _grazing_curve(system: Oscillator, key: str, values: list[float]) -> str:
-    touches = [grazing(system.replace(**{key: value})) for value in values]
+def _grazing_curve(system: Oscillator, key: str, values: np.ndarray, display: Display) -> str:
+    """A line for each value of a swept number; above them where the gap is just filled."""
+    touches = [grazing(system.replace(**{key: value})) for value in values.tolist()]
     alike = all(touch.b_right == touch.b_left for touch in touches)
-    lines = [f"# {key} {'b*' if alike else 'b_right b_left'} tau*"]
-    for value, touch in zip(values, touches, strict=True):
+    name = CYCLES.name if display.in_cycles and key == FREQUENCY.name else key
+    units = [unit_in(system.described[key].units, system.units), unit_in("m", system.units)]
+    (of_key, key_unit), (of_size, size_unit) = (display.of(unit) for unit in units)
+    lines = []
+    if values.min() < values.max():
+        found = quiet(system, key, (float(values.min()), float(values.max())))
+        ends = {end * of_key for pair in found.ranges for end in pair if values.min() < end < values.max()}
+        filled = ", ".join(f"{end:.12g}" for end in sorted(ends)) or "nowhere here"
+        lines.append(f"# the gap is just filled at {name}{shown_unit(key_unit)} = {filled}")
+    size = shown_unit(size_unit)
+    lines.append(f"# {name}{shown_unit(key_unit)} {f'b*{size}' if alike else f'b_right{size} b_left{size}'} tau*")
+    for value, touch in zip(values.tolist(), touches, strict=True):
         sizes = [touch.b] if alike else [touch.b_right, touch.b_left]
-        lines.append(" ".join(map(repr, [value, *sizes, touch.tau])))
+        lines.append(" ".join(map(repr, [value * of_key, *(b * of_size for b in sizes), touch.tau])))
     return "\n".join(lines)
 
 
-def grazing_text(touch: Grazing, system: Oscillator) -> str:
+def grazing_text(touch: Grazing, system: Oscillator, display: Display = AS_STORED) -> str:
     """The text of Theorem 1 that `grazing` prints, with the stops that there are."""
+    factor, unit = display.of(unit_in("m", system.units))
+    unit = f" {unit_text(unit)}" if unit_text(unit) else ""
     stops = system.options.get("stops", "both")
     alike = touch.b_right == touch.b_left
     if alike:
-        lines = [f"b*    = {touch.b!r}"]
+        lines = [f"b*    = {touch.b * factor!r}{unit}"]
     else:
         both = {"right": ("right",), "left": ("left",)}.get(stops, ("right", "left"))
-        lines = [f"b at the {side} stop = {getattr(touch, f'b_{side}')!r}" for side in both]
+        lines = [f"b at the {side} stop = {getattr(touch, f'b_{side}') * factor!r}{unit}" for side in both]
     state = np.array(touch.state)
     if stops == "left":  # half a period later, the motion is mirrored about its middle
         rest = static_state(system.linear)
@@ -121,9 +144,14 @@ def model_text(model: Model) -> str:
 
 
 def _allowed(declared: Option) -> str:
-    kinds = {"flag": "true or false", "whole": "a whole number", "matrix": "a matrix", "vector": "a list of numbers"}
-    kinds["units"] = "SI or three numbers"
-    return kinds.get(declared.kind) or " or ".join(declared.words)
+    kinds = {
+        "whole": "a whole number",
+        "pair": "two whole numbers",
+        "matrix": "a matrix",
+        "vector": "a list of numbers",
+    }
+    kinds["units"] = "SI, or three names or numbers"
+    return kinds.get(declared.kind) or " or ".join(str(word).lower() for word in declared.words)
 
 
 def _each(declared: Parameter | Option) -> str:
