@@ -1,4 +1,6 @@
-"""A program `vibro-sweep explore` and a page of it, for the tests of this folder."""
+"""A program `vibro-sweep explore`, a page of it and a browser, for the tests of this folder."""
+
+import shutil
 
 import pytest
 from support.explorers import answers, explorer
@@ -21,3 +23,15 @@ def page(program):
 @pytest.fixture
 def view(page):
     return answers(page, "open", 1)[0]["view"] | {"columns": 64, "transient": 100, "record": 20}
+
+
+@pytest.fixture(scope="package")
+def browser():
+    found = next((path for name in ("chromium", "chromium-browser") if (path := shutil.which(name))), None)
+    if found is None:
+        pytest.skip("no chromium here: apt-get install chromium")
+    api = pytest.importorskip("playwright.sync_api", reason="the browser is driven by playwright")
+    with api.sync_playwright() as playwright:
+        opened = playwright.chromium.launch(executable_path=found, args=["--no-sandbox"])
+        yield opened
+        opened.close()

@@ -1,7 +1,5 @@
 """The live page in a real browser: it follows a slider, zooms and comes back, shows orbits and why a window ends."""
 
-import shutil
-
 import numpy as np
 import pytest
 from support import ROOT
@@ -11,18 +9,6 @@ import vibro_sweep as vs
 
 pytestmark = pytest.mark.slow
 MOST = 120_000  # ms, for kernels that are to be compiled
-
-
-@pytest.fixture(scope="module")
-def browser():
-    found = next((path for name in ("chromium", "chromium-browser") if (path := shutil.which(name))), None)
-    if found is None:
-        pytest.skip("no chromium here: apt-get install chromium")
-    api = pytest.importorskip("playwright.sync_api", reason="the browser is driven by playwright")
-    with api.sync_playwright() as playwright:
-        opened = playwright.chromium.launch(executable_path=found, args=["--no-sandbox"])
-        yield opened
-        opened.close()
 
 
 @pytest.fixture(scope="module")

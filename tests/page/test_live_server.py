@@ -110,7 +110,7 @@ def test_contacts_with_a_compliant_stop_and_the_ends_of_its_windows(page):
     words, _ = answers(page, "open", 1, name="one_sided_elastic")
     view = words["view"]
     assert {one["name"]: one["value"] for one in words["numbers"]}["c_stop"] == 0
-    assert [name for name, _ in words["heights"]] == ["x1", "v1"]
+    assert [name for name, _ in words["heights"]] == ["x1", "v1", "contact_force_max", "penetration_max"]
     words, arrays = answers(page, "orbit", 2, view=view, value=1.2)
     touch, release = arrays["contact_touch"], arrays["contact_release"]
     assert (words["period"], words["contacts"], len(touch)) == (1, 1, 2) and words["pressed"][1]

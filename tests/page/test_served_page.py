@@ -1,10 +1,13 @@
 """`vs.explore`: a page served from Python, what it begins with, and how it ends."""
 
+import re
 import sys
+import tomllib
 import urllib.error
 import urllib.request
 
 import pytest
+from support import ROOT
 from support.explorers import answers
 
 import vibro_sweep as vs
@@ -80,7 +83,13 @@ def test_other_refusals():
 
 
 def test_without_the_extra(monkeypatch):
+    """The message and the README say what is needed in the same words, and pyproject.toml has it."""
     monkeypatch.delitem(sys.modules, "vibro_sweep.live.server", raising=False)
     monkeypatch.setitem(sys.modules, "uvicorn", None)
-    with pytest.raises(vs.VibroSweepError, match="explore needs the package uvicorn: pip install starlette"):
+    with pytest.raises(vs.VibroSweepError, match=r"explore needs .* \(uvicorn is not there\)$") as refused:
         vs.explore(SYSTEM)
+    needs = str(refused.value).removeprefix("explore ").partition(" (")[0]
+    assert needs in " ".join((ROOT / "README.md").read_text().replace("`", "").split())
+    extra = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"]["explore"]
+    packages = re.fullmatch(r"needs the packages (.*): pip install 'vibro_sweep\[explore\]'", needs)[1]
+    assert re.split(", | and ", packages) == [package.partition(">=")[0] for package in extra]

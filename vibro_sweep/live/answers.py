@@ -62,7 +62,7 @@ class Answers:
         """The orbit at a value."""
         settled_orbit, went_on = self._settled(request)
         arrays, words = orbit_message(settled_orbit)
-        words |= {"value": request.value, "went_on": went_on}
+        words |= {"value": request.value, "start": request.start, "went_on": went_on}
         return binary_message("orbit", request.seq, arrays, **words)
 
     def window(self, request: WindowEnds, progress: Callable[[int, float], None]) -> Message:

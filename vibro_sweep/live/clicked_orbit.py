@@ -7,7 +7,7 @@ import numpy as np
 
 from vibro_sweep.analysis.periodic.itinerary import canonical_start, word
 from vibro_sweep.analysis.single.orbit import simulate
-from vibro_sweep.driver.block_columns import whole_block
+from vibro_sweep.driver.block_columns import columns_of, whole_block
 from vibro_sweep.driver.compute import compute
 from vibro_sweep.live.requests import View
 from vibro_sweep.live.views import scene_of_view
@@ -37,9 +37,15 @@ class Settled(NamedTuple):
 
 
 def settled(view: View, value: float, start: int, end: np.ndarray | None) -> Settled:
-    """The orbit at a value of the swept number; end: where its orbit in the diagram has ended, to go on from there."""
+    """The orbit at a value of the swept number; end: where its orbit in the diagram has ended, to go on from there.
+
+    Random starts are those that the diagram has at this value.
+    """
     scene = replace(scene_of_view(view), section=Section())
     system = scene.system.replace(**{view.axis: value})
+    places = np.flatnonzero(scene.sweep[view.axis] == value)
+    if end is None and scene.start.kind == "random" and len(places):
+        return _drawn(scene, system, int(places[0]), start)
     if end is not None:
         of_one_orbit = scene.replace(system=system, sweep=None, start=end, transient=_lead(system))
     else:
@@ -52,12 +58,25 @@ def _lead(system: Oscillator) -> int:
     return RELAXING if system.linear.by_force else 0
 
 
+def _drawn(scene: Scene, system: Oscillator, column: int, start: int) -> Settled:
+    """The orbit of a random start of a column."""
+    block = columns_of(whole_block(scene, _wanted(system)), slice(column, column + 1))
+    arrays = {name: values[0] for name, values in compute(block)[1].items()}
+    return _settled(scene, system, arrays, start, False)
+
+
 def _computed(scene: Scene, system: Oscillator, start: int, alone: bool) -> Settled:
-    names = state(system.masses)
-    _, arrays = compute(whole_block(scene, [*names, "period", "lyapunov", "lyapunov_error", "status", "end"]))
+    return _settled(scene, system, compute(whole_block(scene, _wanted(system)))[1], start, alone)
+
+
+def _wanted(system: Oscillator) -> list[str]:
+    return [*state(system.masses), "period", "lyapunov", "lyapunov_error", "status", "end"]
+
+
+def _settled(scene: Scene, system: Oscillator, arrays: dict[str, np.ndarray], start: int, alone: bool) -> Settled:
     if scene.n_starts > 1:
         arrays = {name: values[min(start, scene.n_starts - 1)] for name, values in arrays.items()}
-    section = np.stack([arrays[name] for name in names], axis=-1)
+    section = np.stack([arrays[name] for name in state(system.masses)], axis=-1)
     numbers = (int(arrays["period"]), int(arrays["status"]), arrays["lyapunov"], arrays["lyapunov_error"])
     return Settled(system, arrays["end"], section, *numbers, alone, scene.dynamics == "map")
 

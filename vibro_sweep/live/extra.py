@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from vibro_sweep.checks.errors import MissingPackageError
 
 PACKAGES = ("starlette", "uvicorn", "websockets")
+NEEDS = "needs the packages starlette, uvicorn and websockets: pip install 'vibro_sweep[explore]'"
 
 
 @contextlib.contextmanager
@@ -16,5 +17,4 @@ def needed() -> Iterator[None]:
     except ModuleNotFoundError as error:
         if error.name not in PACKAGES:
             raise
-        text = f"explore needs the package {error.name}: pip install {' '.join(PACKAGES)}"
-        raise MissingPackageError(text) from None
+        raise MissingPackageError(f"explore {NEEDS} ({error.name} is not there)") from None

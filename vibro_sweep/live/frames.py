@@ -61,7 +61,7 @@ def frames(
     Parameters
     ----------
     variables : those of the sweep's Dataset that are wanted, or `end`, the states (2 N) in which orbits end; left out:
-        all of the Dataset. A preview has those of the section
+        all of the Dataset. A preview has those of the section, or where there are none, those of contacts
     preview : None: without one
     seconds : that a piece takes, more or less
     pace : measured on the sweeps before, where they are of the same kind; it is brought up to date
@@ -96,8 +96,10 @@ def _frames(
 
 
 def _preview(scene: Scene, whole: Block, wanted: frozenset[str], preview: Preview, pace: Pace) -> Frame:
-    section = {name for name, quantity in quantities(scene).items() if quantity.dimensions == ("sample",)}
-    draft = draft_of(whole, preview.transient, preview.record, (wanted & section) | {"status"})
+    known = quantities(scene)
+    section = {name for name in wanted & known.keys() if known[name].dimensions == ("sample",)}
+    contacts = {name for name in wanted & known.keys() if "contacts" in known[name].asked_by}
+    draft = draft_of(whole, preview.transient, preview.record, (section or contacts) | {"status"})
     part = columns_of(draft, slice(None, None, pace.step(draft, preview.columns, preview.seconds)))
     return _computed("preview", part, draft, pace, last=False)[0]
 

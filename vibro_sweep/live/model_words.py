@@ -6,18 +6,30 @@ from typing import Any
 import numpy as np
 
 from vibro_sweep.live.requests import View
-from vibro_sweep.live.views import SPEEDS, heights
+from vibro_sweep.live.views import SPEEDS, by_cycles, display_of_scene, heights
 from vibro_sweep.oscillator.catalogue import BY_NAME
 from vibro_sweep.oscillator.checked_numbers import range_of
 from vibro_sweep.oscillator.contact_laws.compliant import LAW as COMPLIANT
 from vibro_sweep.oscillator.models import MODELS
 from vibro_sweep.oscillator.oscillator import Oscillator
 from vibro_sweep.oscillator.stops import stop_of
-from vibro_sweep.plotting.style import CHAOS, EXPONENTS, LONGER, LONGEST, NO_PERIOD, PERIODS, density_colours
+from vibro_sweep.plotting.style import (
+    ARROWS,
+    BRANCHES,
+    CHAOS,
+    EXPONENTS,
+    LONGER,
+    LONGEST,
+    NO_PERIOD,
+    PERIODS,
+    density_colours,
+)
 from vibro_sweep.scene import Scene
 from vibro_sweep.tables.exponents import CERTAIN
 from vibro_sweep.tables.outcomes import NOT_COMPUTED, NOT_SETTLED, STATUSES
+from vibro_sweep.tables.parameters import CYCLES, FREQUENCY
 from vibro_sweep.tables.quantity import NUMBER, POSITIVE, Parameter
+from vibro_sweep.tables.units import Display, unit_in, unit_text
 
 DECADE = 10.0
 LARGEST = sys.float_info.max
@@ -33,10 +45,14 @@ def model_words(scene: Scene, view: View) -> dict[str, Any]:
     """All that a page needs to know of an oscillator, or of its mapping."""
     system = scene.system
     stops = system.options.get("stops", "both")
+    other = FREQUENCY.name if by_cycles(view) else CYCLES.name  # of which one stands in place of the other
+    display = display_of_scene(scene)
     numbers = [
-        _slider(quantity, value, view, stops, system.numbers[name] is None)
+        _slider(quantity, value, view, stops, system.numbers.get(name, value) is None)
+        | _shown(quantity.units, system, display.angular if name == FREQUENCY.name else display)
         for name, quantity in system.described.items()
-        if isinstance(value := _value(system, view, quantity), (int, float))
+        if name != other
+        and isinstance(value := _value(system, view, quantity), (int, float))
         and not (name.endswith("_left") and stops != "both")
         and not (scene.dynamics == "map" and name.startswith(("offset", "R_left", "constant", "tau")))
     ]
@@ -44,6 +60,7 @@ def model_words(scene: Scene, view: View) -> dict[str, Any]:
         "numbers": numbers,
         "mapping": not system.linear.compliant,
         "heights": [[name, _label(name)] for name in heights(scene)],
+        "units": {name: _shown(unit, system, display) for name, unit in _declared(scene).items()},
         "title": MODELS[system.model.name].title if system.model.name in MODELS else system.model.name,
         "stops": [stop if np.isfinite(stop) else None for stop in (system.linear.low, system.linear.high)],
         "colours": _colours(),
@@ -55,7 +72,7 @@ def model_words(scene: Scene, view: View) -> dict[str, Any]:
 
 def _value(system: Oscillator, view: View, quantity: Parameter) -> Any:
     """What a number is; of one that is left out what it follows, or what a compliant stop has without it."""
-    numbers_now = system.numbers
+    numbers_now = system.numbers | {CYCLES.name: system.frequency}
     if quantity.name == view.axis and isinstance(value := view.scene.system.get(quantity.name), (int, float)):
         return value  # and not the first one of the sweep
     for side in ("right", "left"):
@@ -88,6 +105,19 @@ def _slider(quantity: Parameter, value: float, view: View, stops: str, left_out:
     return words | {"low": low, "high": high, "log": logarithmic, "allowed": (allowed or NUMBER).text}
 
 
+def _declared(scene: Scene) -> dict[str, str]:
+    """The units, in SI, of what stands on axes beside the numbers of the system."""
+    speed = BY_NAME["v1"].units
+    of_heights = {name: speed if name in SPEEDS else BY_NAME[name].units for name in heights(scene)}
+    return of_heights | {name: BY_NAME[name].units for name in ("gap", "lyapunov")} | {"gap_velocity": speed}
+
+
+def _shown(declared: str, system: Oscillator, display: Display) -> dict[str, Any]:
+    """The unit of a number on the page, and the factor by which that of the system is multiplied to be in it."""
+    scale, unit = display.of(unit_in(declared, system.units))
+    return {"unit": unit_text(unit), "scale": scale}
+
+
 def _label(name: str) -> str:
     if name in SPEEDS:
         return f"impact speed at the {SPEEDS[name]} stop"
@@ -109,6 +139,7 @@ def _colours() -> dict[str, Any]:
         "density": table.ravel().tolist(),
         "exponents": list(EXPONENTS),
         "exponents_dark": ["#ff7a85", "#6ab4f4", "#a9a9ff", "#e0a030"],
+        "branches": [[ARROWS[way], colour] for way, colour in BRANCHES.items()],
         "chaos": CHAOS,
         "periods": list(PERIODS[:LONGEST]),
         "longer": LONGER,

@@ -38,6 +38,12 @@ class Orbit(_Checked):
     record: int = Field(ge=1, le=10**4)
 
 
+class Picture(_Checked):
+    """The units in which numbers are shown."""
+
+    units: list[Name] = Field(max_length=10)
+
+
 class SceneAsked(_Checked):
     """A scene of one number of an oscillator, or of its mapping, as in YAML. Only these keys are allowed: others name
     files, or take long."""
@@ -49,6 +55,7 @@ class SceneAsked(_Checked):
     sweep: dict[Name, Axis] = Field(min_length=1, max_length=1)
     start: dict[Name, str | int | float] = Field(default={}, max_length=40)
     orbit: Orbit
+    picture: Picture | None = None
 
     @model_validator(mode="after")
     def _is_small(self) -> "SceneAsked":
@@ -64,7 +71,8 @@ class SceneAsked(_Checked):
 class View(_Checked):
     """What a diagram shows.
 
-    y : a coordinate, `gap`, or `speed_right` or `speed_left`, at which the mass meets a stop
+    y : a coordinate, `gap`, `speed_right` or `speed_left`, at which the mass meets a stop, `contact_force_max` or
+        `penetration_max`
     """
 
     scene: SceneAsked

@@ -97,7 +97,7 @@ def explore(
 
 def _swept(system: Oscillator, parameter: str, bounds: Sequence[float] | None) -> Scene:
     checked_word("parameter", parameter, tuple(system.described))
-    value = float(system.numbers[parameter])
+    value = float(getattr(system, parameter))
     lo, hi = span(value) if bounds is None else checked_interval("bounds", bounds, value)
     sweep = {parameter: {"start": lo, "stop": hi, "num": COLUMNS}}
     return scene_of(changed({}, {"system": system, "sweep": sweep, "transient": 1000, "record": 200}), "explore")

@@ -1,6 +1,7 @@
 """From a view of the page to the scene that computes it, and from scenes to views."""
 
 import json
+import math
 
 import numpy as np
 
@@ -10,8 +11,11 @@ from vibro_sweep.oscillator.oscillator import Oscillator
 from vibro_sweep.scene import Scene, scene_of
 from vibro_sweep.scene.written import system_data
 from vibro_sweep.tables.coordinates import state
+from vibro_sweep.tables.parameters import CYCLES, FREQUENCY
+from vibro_sweep.tables.units import AS_STORED, Display, display_of
 
 SPEEDS = {"speed_right": "right", "speed_left": "left"}
+PEAKS = ("contact_force_max", "penetration_max")  # one number of an orbit
 OBSERVE = ("section", "lyapunov")
 COLUMNS = 1000
 MOST_RECORDED, LONGEST_TRANSIENT = 400, 2000  # of a scene that is opened; the page can ask for more
@@ -23,14 +27,15 @@ def scene_of_view(view: View) -> Scene:
     if view.scene.dynamics == "map":
         data["order"] = view.scene.order
     section = {"kind": "impact", "stop": SPEEDS[view.y]} if view.y in SPEEDS else {"kind": "phase"}
-    scene = scene_of(data | {"observe": [*OBSERVE], "section": section}, "view")
+    observe = [*OBSERVE, *(["contacts"] if view.y in PEAKS else [])]
+    scene = scene_of(data | {"observe": observe, "section": section}, "view")
     if view.y not in heights(scene):
         raise ArgumentError(f"y: must be one of {', '.join(heights(scene))}")
     return scene
 
 
 def heights(scene: Scene) -> list[str]:
-    """What can stand on the vertical axis. A compliant stop has no impacts, a mapping neither."""
+    """What can stand on the vertical axis. A compliant stop has contacts in place of impacts, a mapping neither."""
     system = scene.system
     q = system.linear
     speeds = [
@@ -38,7 +43,8 @@ def heights(scene: Scene) -> list[str]:
         for name, stop, side in zip(SPEEDS, (q.high, q.low), (1, -1), strict=True)
         if np.isfinite(stop) and scene.dynamics == "flow" and not q.is_compliant(side)
     ]
-    return [*state(system.masses), *([] if system.gap_is_x1 else ["gap"]), *speeds]
+    peaks = PEAKS if q.compliant else ()
+    return [*state(system.masses), *([] if system.gap_is_x1 else ["gap"]), *speeds, *peaks]
 
 
 def needed(system: Oscillator, y: str) -> list[str]:
@@ -47,7 +53,9 @@ def needed(system: Oscillator, y: str) -> list[str]:
 
 
 def height_of(system: Oscillator, y: str, arrays: dict[str, np.ndarray]) -> np.ndarray:
-    """What stands on the vertical axis, from the variables of a sweep."""
+    """What stands on the vertical axis, from the variables of a sweep; the last dimension is the dots of an orbit."""
+    if y in PEAKS:
+        return arrays[y][..., None]
     if y not in SPEEDS:
         return arrays[y]
     rate = sum(n * arrays[name] for n, name in zip(system.linear.normal, needed(system, y), strict=True) if n)
@@ -64,6 +72,12 @@ def view_of(scene: Scene) -> View:
     else:
         low, high = span(float(scene.system.numbers[axis]))
     start = scene.data().get("start", {}) if set(scene.sweep) == {axis} else {}
+    in_cycles = display_of_scene(scene).in_cycles
+    if axis == FREQUENCY.name and in_cycles:
+        axis, low, high = CYCLES.name, low / (2 * math.pi), high / (2 * math.pi)
+    if axis == CYCLES.name or in_cycles:
+        del system[FREQUENCY.name]
+        system[CYCLES.name] = scene.system.frequency
     if scene.start.kind == "random":
         start = start | {"random": min(scene.start.count, 4)}
     asked = {
@@ -77,8 +91,20 @@ def view_of(scene: Scene) -> View:
     }
     if scene.dynamics == "map":
         asked |= {"dynamics": "map", "order": scene.order, "expand_at": scene.expand_at}
+    if scene.picture_units:
+        asked["picture"] = {"units": [*scene.picture_units]}
     y = "speed_" + scene.section.stop if scene.section.kind == "impact" else "x1"
     return View(scene=SceneAsked(**asked), y=y)
+
+
+def display_of_scene(scene: Scene) -> Display:
+    """The units in which the page shows numbers."""
+    return display_of(scene.picture_units) or AS_STORED
+
+
+def by_cycles(view: View) -> bool:
+    """Whether the frequency stands in place of omega."""
+    return CYCLES.name in view.scene.system or view.axis == CYCLES.name
 
 
 def span(value: float) -> tuple[float, float]:

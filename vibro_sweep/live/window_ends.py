@@ -13,7 +13,7 @@ from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.analysis.windows.job import Job, window_of
 from vibro_sweep.live.clicked_orbit import Settled
 from vibro_sweep.live.requests import View
-from vibro_sweep.live.views import SPEEDS, height_of
+from vibro_sweep.live.views import PEAKS, SPEEDS, height_of
 from vibro_sweep.oscillator.checked_numbers import range_of
 from vibro_sweep.tables.bifurcations import BY_NAME, GRAZES
 from vibro_sweep.tables.coordinates import state
@@ -121,7 +121,9 @@ def _thinned(arrays: Arrays) -> Arrays:
 
 def _drawn(view: View, settled_orbit: Settled, arrays: Arrays) -> dict[str, np.ndarray]:
     """Values (n,), whether unstable (n,), and what stands on the vertical axis (n, m) of the section points."""
-    if view.y in SPEEDS:
+    if view.y in PEAKS:  # which branches do not have
+        points = np.empty((len(arrays["value"]), 0))
+    elif view.y in SPEEDS:
         side = 1 if SPEEDS[view.y] == "right" else -1
         points = np.abs(arrays["impact_v"][:, arrays["impact_side"] == side])
     else:

@@ -1,6 +1,7 @@
-// Sliders and fields for the numbers of an oscillator. A slider is an index; the exact number is in the field.
+// Sliders and fields for the numbers of an oscillator, in the units that are shown. A slider is an index; the exact
+// number is in the field.
 
-import { shown } from "./axes.js";
+import { typed, whole } from "./units.js";
 
 const STEPS = 1000;
 
@@ -24,12 +25,15 @@ export class Controls {
       name.append(`${one.symbol} `);
       const words = document.createElement("i");
       words.textContent = one.label;
-      name.append(words);
+      const unit = document.createElement("span");
+      unit.className = "unit";
+      unit.textContent = one.unit;
+      name.append(words, " ", unit);
       const field = document.createElement("input");
       field.type = "number";
       field.step = "any";
       field.id = `field-${one.name}`;
-      field.setAttribute("aria-label", `${one.label} ${one.name}`);
+      field.setAttribute("aria-label", `${one.label} ${one.name}${one.unit ? ` in ${one.unit}` : ""}`);
       const slider = document.createElement("input");
       slider.type = "range";
       slider.min = 0;
@@ -53,10 +57,10 @@ export class Controls {
         this.nudge(entry, event.key === "ArrowUp" ? 1 : -1);
       });
       field.addEventListener("change", () => {
-        const value = Number(field.value);
+        const value = typed(field.value, entry);
         if (field.value !== "" && Number.isFinite(value)) this.set(one.name, value, true);
         else if (field.value === "" && entry.leader) this.follow(entry);
-        else field.value = shown(entry.value);
+        else field.value = whole(entry.value, entry);
       });
       if (one.leader) name.title += `; it is ${one.leader} until it is changed, and again once its field is emptied`;
       this.set(one.name, one.value, false);
@@ -73,9 +77,9 @@ export class Controls {
     const entry = this.rows.get(name);
     if (!entry) return;
     entry.value = value;
-    if (Number(entry.field.value) !== value || entry.field.value === "") entry.field.value = shown(value);
+    if (typed(entry.field.value, entry) !== value || entry.field.value === "") entry.field.value = whole(value, entry);
     entry.slider.value = indexOf(entry, value);
-    entry.slider.setAttribute("aria-valuetext", shown(value));
+    entry.slider.setAttribute("aria-valuetext", whole(value, entry));
     if (tell) entry.follows = false;
     for (const other of this.rows.values()) if (other.follows && other.leader === name) this.set(other.name, value, false);
     if (tell) this.change(name, value);
@@ -98,10 +102,12 @@ export class Controls {
   }
 }
 
-function valueAt({ low, high, log }, index) {
+// a number that is short in the unit that is shown
+function valueAt({ low, high, log, scale }, index) {
   const share = index / STEPS;
-  const value = log ? low * (high / low) ** share : low + (high - low) * share;
-  return Number(value.toPrecision(4 + Math.ceil(Math.max(0, Math.log10(Math.abs(value || 1) / (high - low))))));
+  const value = scale * (log ? low * (high / low) ** share : low + (high - low) * share);
+  const digits = 4 + Math.ceil(Math.max(0, Math.log10(Math.abs(value || 1) / (scale * (high - low)))));
+  return Number(value.toPrecision(digits)) / scale;
 }
 
 function indexOf({ low, high, log }, value) {

@@ -1,9 +1,12 @@
 // Draws a diagram on a canvas: density of section points, period strip, exponents. It knows no server.
 
-import { short, shown, ticks } from "./axes.js";
+import { shown, ticks } from "./axes.js";
+import { measured, titled } from "./units.js";
 
 const LEFT = 62, RIGHT = 20, TOP = 10, BOTTOM = 42, STRIP = 10, SPACE = 8;
 const NOMINAL = 200; // section points of a column, whatever it has
+const PALE = 0.3; // opacity of what is computed anew
+const FAINTEST = 0.5; // opacity of a seldom place of two starts in two colours
 
 export class Drawing {
   constructor(canvas) {
@@ -26,7 +29,8 @@ export class Drawing {
     return { ratio, width, height, dots, strip, exponents };
   }
 
-  // picture: {data, view: {low, high, bottom, top}, colours, names, marks}
+  // picture: {data, pale, view: {low, high, bottom, top}, colours, names, units, marks}; pale: the data are those of an
+  // older view
   draw(picture) {
     const { context } = this, place = this.layout();
     this.place = place;
@@ -34,18 +38,26 @@ export class Drawing {
     context.setTransform(place.ratio, 0, 0, place.ratio, 0, 0);
     context.fillStyle = theme.paper;
     context.fillRect(0, 0, place.width, place.height);
-    const { data, view } = picture;
+    const { data, view, units } = picture;
+    this.pale = picture.pale;
     if (data) {
       this.tint(data, view, place, picture.certain, theme);
       this.density(data, view, place, picture.colours, theme);
       this.strip(data, view, place, picture.colours);
+      context.globalAlpha = 1;
     }
     this.frame(place.dots, theme);
-    this.verticalAxis(place.dots, view.bottom, view.top, picture.names.height, theme);
-    if (data) this.exponents(data, view, place, picture.colours, theme);
+    this.verticalAxis(place.dots, view.bottom, view.top, picture.names.height, units.height, theme);
+    if (data) this.exponents(data, view, place, picture.colours, units.exponents, theme);
     this.frame(place.exponents, theme);
-    this.horizontalAxis(place, view, picture.names.axis, theme);
+    this.horizontalAxis(place, view, picture.names.axis, units.axis, theme);
     this.marks(picture, place, theme);
+    if (data?.both) this.legend(place.dots, picture.colours, theme);
+  }
+
+  // of a column whose periods and exponents may still be those of the diagram before
+  opacity(data, c) {
+    return this.pale || data.fresh[c] !== 2 ? PALE : 1;
   }
 
   density(data, view, place, colours, theme) {
@@ -54,10 +66,10 @@ export class Drawing {
     if (!this.image || this.image.width !== W || this.image.height !== H) {
       this.image = this.context.createImageData(W, H);
       this.pixels = new Uint32Array(this.image.data.buffer);
-      this.cells = new Float32Array(W * H);
+      this.cells = [0, 1].map(() => new Float32Array(W * H));
     }
-    const { cells, pixels } = this, scale = H / (view.top - view.bottom), base = view.bottom - data.middle;
-    cells.fill(0);
+    const { pixels } = this, scale = H / (view.top - view.bottom), base = view.bottom - data.middle;
+    this.cells.forEach((cells) => cells.fill(0));
     const drawn = [...data.drawnColumns()], n = data.columns, thick = ratio >= 1.5 ? 2 : 1;
     for (let c = 0; c < drawn.length; c++) {
       const [from, to] = pixelsOf(data, view, c, W);
@@ -65,25 +77,32 @@ export class Drawing {
       for (let s = 0; s < data.starts; s++) {
         const points = data.dots[drawn[c] * data.starts + s];
         if (!points || !points.length) continue;
-        const weight = (NOMINAL / points.length / data.starts) * Math.min(1, (W * 1.0) / n);
+        // up and down have layers of their own; in a preview, where they do not follow, both are there
+        const cells = this.cells[data.both && s ? 1 : 0], shared = data.both && data.fresh[drawn[c]] === 1;
+        const weight = (NOMINAL / points.length / (data.both ? 1 : data.starts)) * Math.min(1, (W * 1.0) / n);
         for (let i = 0; i < points.length; i++) {
           const row = H - 1 - Math.floor((points[i] - base) * scale);
           if (row < 0 || row >= H) continue;
           for (let x = Math.max(0, from); x < Math.min(W, to); x++) {
-            cells[row * W + x] += weight;
-            if (thick === 2 && row + 1 < H) cells[(row + 1) * W + x] += weight;
+            for (let r = row; r < Math.min(H, row + thick); r++) {
+              cells[r * W + x] += weight;
+              if (shared) this.cells[1][r * W + x] += weight;
+            }
           }
         }
       }
     }
-    const table = tableOf(colours.density, theme), most = Math.log(NOMINAL);
-    for (let i = 0; i < cells.length; i++) {
-      const cell = cells[i];
+    const [first, second] = this.cells, most = Math.log(NOMINAL), alone = tableOf(colours.density, theme);
+    const [up, down] = colours.branches.map(([, colour]) => rampOf(colour, theme)), both = rampOf(theme.ink, theme);
+    for (let i = 0; i < first.length; i++) {
+      const cell = first[i] + second[i];
+      const table = !data.both ? alone : !second[i] ? up : first[i] ? both : down;
       pixels[i] = cell === 0 ? theme.clear : table[Math.max(0, Math.min(255, ((Math.log(cell) / most) * 255) | 0))];
     }
     this.layer ??= document.createElement("canvas");
     if (this.layer.width !== W || this.layer.height !== H) [this.layer.width, this.layer.height] = [W, H];
     this.layer.getContext("2d").putImageData(this.image, 0, 0);
+    this.context.globalAlpha = this.pale ? PALE : 1;
     this.context.drawImage(this.layer, dots.x, dots.y, dots.w, dots.h);
   }
 
@@ -95,6 +114,7 @@ export class Drawing {
       if (!(data.exponents[at] > certain * data.errors[at])) continue;
       const [from, to] = pixelsOf(data, view, c, place.dots.w);
       const left = Math.max(0, from), right = Math.min(place.dots.w, to);
+      this.context.globalAlpha = this.opacity(data, c);
       if (right > left) this.context.fillRect(place.exponents.x + left, place.exponents.y, right - left, place.exponents.h);
     }
   }
@@ -107,6 +127,7 @@ export class Drawing {
       const [from, to] = pixelsOf(data, view, c, strip.w);
       const left = Math.max(0, from), right = Math.min(strip.w, to);
       if (right <= left) continue;
+      this.context.globalAlpha = this.opacity(data, c);
       this.context.fillStyle = periodColour(period, colours);
       this.context.fillRect(strip.x + left, strip.y, right - left, strip.h);
     }
@@ -121,7 +142,8 @@ export class Drawing {
     this.exponentRange = [centre - half, centre + half];
   }
 
-  exponents(data, view, place, colours, theme) {
+  // of up and down the first one in their colours, the others pale; the wider line of one shows below that of the other
+  exponents(data, view, place, colours, unit, theme) {
     const { exponents: box } = place, { context } = this;
     if (!data.exponents || !this.exponentRange) return;
     const [low, high] = this.exponentRange, y = (v) => box.y + box.h * (1 - (v - low) / (high - low));
@@ -133,18 +155,21 @@ export class Drawing {
     context.lineWidth = 1;
     line(context, box.x, y(0), box.x + box.w, y(0));
     for (let k = data.K - 1; k >= 0; k--) {
-      context.fillStyle = (theme.dark ? colours.exponents_dark : colours.exponents)[k] ?? theme.faint;
+      const colour = (theme.dark ? colours.exponents_dark : colours.exponents)[k] ?? theme.faint;
       for (let c = 0; c < data.columns; c++) {
         const [from, to] = pixelsOf(data, view, c, box.w);
         if (to < 0 || from > box.w) continue;
         for (let s = 0; s < data.starts; s++) {
-          const v = data.exponents[(c * data.starts + s) * data.K + k];
-          if (Number.isFinite(v)) context.fillRect(box.x + from, y(v) - 0.7, Math.max(1.2, to - from), 1.5);
+          const v = data.exponents[(c * data.starts + s) * data.K + k], tall = data.both && s === 0 ? 3 : 1.5;
+          if (!Number.isFinite(v)) continue;
+          context.fillStyle = data.both ? colours.branches[s][1] : colour;
+          context.globalAlpha = this.opacity(data, c) * (data.both && k ? 0.4 : 1);
+          context.fillRect(box.x + from, y(v) - tall / 2, Math.max(1.2, to - from), tall);
         }
       }
     }
     context.restore();
-    this.verticalAxis(box, low, high, "λ", theme);
+    this.verticalAxis(box, low, high, "λ", unit, theme);
   }
 
   frame(box, theme) {
@@ -153,8 +178,24 @@ export class Drawing {
     this.context.strokeRect(box.x - 0.5, box.y - 0.5, box.w + 1, box.h + 1);
   }
 
-  verticalAxis(box, low, high, name, theme) {
-    const { context } = this, { base, list } = ticks(low, high, Math.max(2, box.h / 60));
+  legend(dots, colours, theme) {
+    const { context } = this, entries = [...colours.branches, ["both", theme.ink]];
+    context.font = "11px system-ui, sans-serif";
+    context.textAlign = "right";
+    context.textBaseline = "top";
+    let right = dots.x + dots.w - 6;
+    for (const [words, colour] of entries.reverse()) {
+      this.readable(words, right, dots.y + 5, theme);
+      right -= context.measureText(words).width + 13;
+      context.fillStyle = colour;
+      context.fillRect(right, dots.y + 6, 9, 9);
+      right -= 9;
+    }
+  }
+
+  verticalAxis(box, from, to, name, quantity, theme) {
+    const low = from * quantity.scale, high = to * quantity.scale;
+    const { context } = this, { base, list } = ticks(low, high, Math.max(2, box.h / 60)), words = titled(name, quantity);
     context.fillStyle = theme.ink;
     context.font = "11px system-ui, sans-serif";
     context.textAlign = "right";
@@ -168,27 +209,28 @@ export class Drawing {
     context.translate(11, box.y + box.h / 2);
     context.rotate(-Math.PI / 2);
     context.textAlign = "center";
-    context.fillText(base === null ? name : `${name} − ${shown(base)}`, 0, 0);
+    context.fillText(base === null ? words : `${words} − ${shown(base)}`, 0, 0);
     context.restore();
   }
 
-  horizontalAxis(place, view, name, theme) {
-    const { context } = this, box = place.exponents, { base, list } = ticks(view.low, view.high, box.w / 90);
+  horizontalAxis(place, view, name, quantity, theme) {
+    const low = view.low * quantity.scale, high = view.high * quantity.scale, words = titled(name, quantity);
+    const { context } = this, box = place.exponents, { base, list } = ticks(low, high, box.w / 90);
     context.fillStyle = theme.ink;
     context.font = "11px system-ui, sans-serif";
     context.textAlign = "center";
     context.textBaseline = "top";
     const bottom = box.y + box.h;
     for (const one of list) {
-      const x = box.x + (box.w * (one.at - view.low)) / (view.high - view.low);
+      const x = box.x + (box.w * (one.at - low)) / (high - low);
       context.fillRect(x, bottom, 1, 3);
       context.fillText(one.text, x, bottom + 6);
     }
     context.font = "12px system-ui, sans-serif";
-    context.fillText(base === null ? name : `${name} − ${shown(base)}`, box.x + box.w / 2, bottom + 22);
+    context.fillText(base === null ? words : `${words} − ${shown(base)}`, box.x + box.w / 2, bottom + 22);
   }
 
-  marks({ view, marks }, place, theme) {
+  marks({ view, marks, units }, place, theme) {
     const { context } = this, { dots, exponents } = place;
     const x = (v) => dots.x + (dots.w * (v - view.low)) / (view.high - view.low);
     const y = (v) => dots.y + dots.h * (1 - (v - view.bottom) / (view.top - view.bottom));
@@ -219,7 +261,7 @@ export class Drawing {
       context.setLineDash([]);
     }
     for (const one of marks.branches) this.branch(one, x, y, theme);
-    if (marks.window) this.ends(marks.window, x, dots, inside, theme);
+    if (marks.window) this.ends(marks.window, units.axis, x, dots, inside, theme);
     if (marks.line !== null && inside(marks.line)) {
       context.strokeStyle = theme.accent;
       context.lineWidth = 1.2;
@@ -265,7 +307,7 @@ export class Drawing {
     context.fillText(words, x, y);
   }
 
-  ends(window, x, dots, inside, theme) {
+  ends(window, quantity, x, dots, inside, theme) {
     const { context } = this;
     [window.low, window.high].forEach((end, i) => {
       if (!inside(end.value)) return;
@@ -279,7 +321,7 @@ export class Drawing {
       const by = context.textAlign === "left" ? 4 : -4;
       const level = dots.y + 18 + 28 * i;
       this.readable(end.type, left + by, level, theme);
-      this.readable(short(end.value, 9), left + by, level + 13, theme);
+      this.readable(measured(end.value, quantity, 9), left + by, level + 13, theme);
     });
   }
 }
@@ -301,8 +343,8 @@ export function themeOf(element) {
   };
 }
 
-function pixelsOf(data, view, c, W) {
-  // the pixels [from, to) of a column: neighbours meet in the middle
+// the pixels [from, to) of a column: neighbours meet in the middle
+export function pixelsOf(data, view, c, W) {
   const n = data.columns - 1, first = data.axis?.[0] ?? view.low, last = data.axis?.[n] ?? view.high;
   const scale = W / (view.high - view.low), step = (last - first) / n;
   const at = data.axis ? data.axis[c] : first + c * step;
@@ -320,6 +362,17 @@ function tableOf(density, theme) {
     table[i] = (255 << 24) | (density[3 * j + 2] << 16) | (density[3 * j + 1] << 8) | density[3 * j];
   }
   return (tableOf.kept[key] = table);
+}
+
+// from a pale colour to the colour itself
+function rampOf(colour, theme) {
+  const full = packed(colour);
+  return Uint32Array.from({ length: 256 }, (_, i) => mixed(theme.clear, full, FAINTEST + (1 - FAINTEST) * (i / 255)));
+}
+
+function mixed(paper, colour, share) {
+  const part = (shift) => Math.round(((paper >> shift) & 255) * (1 - share) + ((colour >> shift) & 255) * share) << shift;
+  return ((255 << 24) | part(16) | part(8) | part(0)) >>> 0;
 }
 
 function packed(hex) {

@@ -1,6 +1,6 @@
 // The page: it asks for a view with each event, and draws what has come once a display interval.
 
-import { short, shown } from "./axes.js";
+import { short } from "./axes.js";
 import { Controls } from "./controls.js";
 import { DiagramData } from "./diagram_data.js";
 import { Drawing } from "./drawing.js";
@@ -9,11 +9,13 @@ import { OrbitPanel } from "./orbit_panel.js";
 import { copyLink, keep } from "./saving.js";
 import { requestOf, viewOf } from "./scene.js";
 import { steer } from "./steering.js";
+import { measured, RATIO, titled, typed, whole } from "./units.js";
 import { fromAddress, ViewState } from "./view_state.js";
 import { branchesOf, wordsOfWindow } from "./window_ends.js";
 
 const $ = (id) => document.getElementById(id);
 const root = document.documentElement;
+const LATE = 120; // ms without an answer, after which what is shown is pale: it does not flicker behind a slider
 const LONG = 1500; // ms without an answer, after which the page says what may take so long
 const COMPILING = "Computing. The first use of a kind of oscillator compiles its kernels, once: that takes up to a minute.";
 
@@ -26,19 +28,19 @@ const controls = new Controls($("numbers"), (name, value) => {
   request();
 });
 let model = null, data = null, asked = 0, dirty = false, fitNext = true, arrived = null, branches = [], why = null;
-let timer = null, askedWhy = 0, since = 0, line = null, start = 0, failed = false, rectangle = null;
+let timer = null, askedWhy = 0, askedOrbit = 0, since = 0, line = null, failed = false, late = false, rectangle = null;
 
 const link = new Link({ open: begin, answer, closed });
 
 function begin() {
   const found = fromAddress();
   if (state.view) {
-    open({ view: requestOf(state.view) }, { view: state.view, range: state.range, home: state.home, line });
+    open({ view: requestOf(state.view) }, { view: state.view, range: state.range, home: state.home, line, start: state.start });
   } else if (found) open({ view: requestOf(found.view) }, found);
   else open({}, null);
 }
 
-let restored = null, clickTimer = null, takenOver = "";
+let restored = null, clickTimer = null, lateTimer = null, takenOver = "";
 function open(what, found) {
   restored = found;
   say(model ? "Opening" : "Connected");
@@ -70,6 +72,7 @@ function opened(message) {
     state.home = restored.home ?? state.home;
     line = restored.line ?? null;
   } else line = null;
+  state.start = restored?.start ?? 0;
   data = null;
   drawing.exponentRange = null;
   since = link.seq;
@@ -85,8 +88,8 @@ function opened(message) {
 function fill() {
   const { view } = state;
   options($("presets"), ["", ...model.presets].map((name) => [name, name || "(this view)"]), model.name);
-  options($("axis"), model.numbers.map((one) => [one.name, `${one.symbol}  ${one.label}`]), view.axis);
-  options($("height"), model.heights, view.y);
+  options($("axis"), model.numbers.map((one) => [one.name, titled(`${one.symbol}  ${one.label}`, one)]), view.axis);
+  options($("height"), model.heights.map(([name, label]) => [name, titled(label, model.units[name])]), view.y);
   $("dynamics").value = view.map.dynamics ?? "flow";
   $("motion").hidden = !model.mapping;
   $("start").value = view.start.follow ?? (view.start.random ? "random" : "state");
@@ -97,12 +100,23 @@ function fill() {
 
 function fields() {
   const { view } = state;
-  $("low").value = shown(view.low);
-  $("high").value = shown(view.high);
+  for (const end of ["low", "high"]) $(end).value = whole(view[end], axisUnit());
+  for (const one of document.querySelectorAll(".of-axis")) one.textContent = axisUnit().unit;
   $("transient").value = view.transient;
   $("record").value = view.record;
   $("back").disabled = !state.past.length;
   $("forward").disabled = !state.coming.length;
+}
+
+// unit and scale of the swept number
+function axisUnit() {
+  return model.numbers.find((one) => one.name === state.view.axis) ?? RATIO;
+}
+
+// an end of the range from its field; one that was not changed keeps all its digits
+function endTyped(id) {
+  const text = $(id).value, value = state.view[id];
+  return text === whole(value, axisUnit()) ? value : typed(text, axisUnit());
 }
 
 // ask for the view as it is now
@@ -121,6 +135,15 @@ function computing() {
   set("computing");
   clearTimeout(timer);
   timer = setTimeout(() => say(COMPILING), LONG);
+  for (const id of ["status", "under"]) $(id).classList.add("stale");
+  lateTimer ??= setTimeout(() => paleFrom(true), LATE);
+}
+
+function paleFrom(now) {
+  clearTimeout(lateTimer);
+  lateTimer = null;
+  late = now;
+  redraw();
 }
 
 function frame(message) {
@@ -128,8 +151,11 @@ function frame(message) {
   if (!data || message.seq !== data.seq) {
     const next = new DiagramData(message);
     next.seq = message.seq;
+    next.both = next.starts === 2 && state.view.start.follow === "both";
     next.inherit(data);
     data = next;
+    paleFrom(false);
+    if (data.seq !== asked) lateTimer = setTimeout(() => paleFrom(true), LATE);
   }
   data.take(message);
   if (fitNext && (message.kind === "preview" || message.last)) {
@@ -141,6 +167,7 @@ function frame(message) {
   if (message.last && message.seq === asked) {
     drawing.fitExponents(data);
     summary();
+    $("under").classList.remove("stale");
   }
   redraw();
 }
@@ -151,15 +178,24 @@ function summary() {
   const words = [...counts].map(([code, n]) => code === model.not_settled
     ? `${n} not settled yet: a longer transient or record may tell`
     : `${n} ${n > 1 ? "orbits" : "orbit"}: ${model.statuses[code] ?? code}`);
-  const { axis, height } = picture().names;
-  $("diagram").setAttribute("aria-label", `${height} over ${axis} from ${shown(state.view.low)} to ${shown(state.view.high)}`);
+  const { names: { axis, height }, units } = picture();
+  const ends = `${whole(state.view.low, units.axis)} to ${measured(state.view.high, units.axis)}`;
+  $("diagram").setAttribute("aria-label", `${titled(height, units.height)} over ${axis} from ${ends}`);
   say([`${data.columns} values of ${state.view.axis}`, ...words].join("; "));
+}
+
+// which of several starts, in words
+function wayOf(start) {
+  const { follow, random } = state.view.start;
+  return follow === "both" ? ["up", "down"][start] : random > 1 ? `start ${start}` : "";
 }
 
 function orbit(message) {
   if (message.seq <= since) return; // of another oscillator
   clearTimeout(clickTimer);
-  panel.show({ ...message, axis: state.view.axis, certain: model.certain });
+  $("orbit").classList.toggle("stale", message.seq !== askedOrbit);
+  const { view: { axis } } = state, { certain, units } = model;
+  panel.show({ ...message, axis, axisUnit: axisUnit(), way: wayOf(message.start), certain, units });
   redraw();
 }
 
@@ -185,7 +221,7 @@ function showWhy() {
   const box = $("window");
   box.hidden = !why;
   if (!why) return;
-  box.replaceChildren(...wordsOfWindow(why, state.view.axis));
+  box.replaceChildren(...wordsOfWindow(why, state.view.axis, axisUnit()));
 }
 
 function saved(message) {
@@ -199,6 +235,7 @@ function error(message) {
   if (!["sweep", "open"].includes(message.of)) return say(message.text, true);
   if (message.of === "sweep" && message.seq !== asked) return;
   clearTimeout(timer);
+  paleFrom(message.of === "sweep");
   failed = true;
   say(message.text, true);
   set("final");
@@ -211,6 +248,7 @@ function set(value) {
 function say(words, bad = false) {
   $("status").textContent = takenOver || words;
   $("status").classList.toggle("bad", bad || takenOver !== "");
+  $("status").classList.remove("stale");
 }
 
 function options(select, list, value) {
@@ -234,8 +272,9 @@ function picture() {
   const height = model.heights.find(([name]) => name === view.y)?.[1] ?? view.y;
   const number = model.numbers.find((one) => one.name === view.axis);
   return {
-    data, certain: model.certain, colours: model.colours, view: { low: view.low, high: view.high, bottom, top },
+    data, pale: late, certain: model.certain, colours: model.colours, view: { low: view.low, high: view.high, bottom, top },
     names: { axis: number ? `${number.label} ${number.symbol}` : view.axis, height },
+    units: { axis: axisUnit(), height: model.units[view.y] ?? RATIO, exponents: model.units.lyapunov },
     marks: {
       grazing: view.axis === "b" ? data?.stars ?? [] : [], line, branches, window: why && !why.reason ? why : null, stops: stopLines(), rectangle,
     },
@@ -259,8 +298,10 @@ function paint() {
   drawing.draw(picture());
   if (!arrived) return;
   if (arrived.seq === asked && !failed) {
-    if (arrived.last) set("final");
-    else {
+    if (arrived.last) {
+      set("final");
+      if (state.view.start.follow || data.starts > 1) askOrbit(); // which now goes on from where its dots end
+    } else {
       if (state.view.start.follow && root.dataset.state === "computing") say("Preview: each point starts by itself; the final picture follows them.");
       set("preview");
     }
@@ -271,11 +312,15 @@ function paint() {
 
 const trailing = () => !$("orbit").hidden && $("trail").getAttribute("aria-pressed") === "true";
 
-function underPointer(column) {
-  const at = column * data.starts, period = data.period[at], K = data.K;
-  const words = [`${state.view.axis} = ${short(data.axis?.[column] ?? NaN, 9)}`];
+function underPointer({ column, start }) {
+  const at = column * data.starts + start, period = data.period[at], K = data.K, rate = model.units.lyapunov;
+  const way = data.starts > 1 ? wayOf(start) : "";
+  const words = [`${state.view.axis} = ${measured(data.axis[column], axisUnit(), 9)}${way ? `, ${way}` : ""}`];
   if (period > 0) words.push(`period ${period}`);
-  if (K && Number.isFinite(data.exponents?.[at * K])) words.push(`λ₁ = ${short(data.exponents[at * K], 4)} ± ${short(data.errors[at * K], 1)}`);
+  if (K && Number.isFinite(data.exponents?.[at * K])) {
+    const [value, error] = [data.exponents, data.errors].map((numbers) => rate.scale * numbers[at * K]);
+    words.push(`${titled("λ₁", rate)} = ${short(value, 4)} ± ${short(error, 1)}`);
+  }
   return words.join(": ").replace(": λ", ", λ");
 }
 
@@ -293,7 +338,8 @@ function askOrbit() {
   if (line === null || !state.view) return;
   soon();
   const column = columnOfOrbit(), value = column >= 0 && data.axis ? data.axis[column] : line;
-  link.ask("orbit", { view: requestOf(state.view), value, start, column });
+  askedOrbit = link.ask("orbit", { view: requestOf(state.view), value, start: state.start, column });
+  $("orbit").classList.add("stale");
 }
 
 const actions = {
@@ -323,20 +369,20 @@ const actions = {
     drawing.fitExponents(data);
     redraw();
   },
-  choose(value, from = 0) {
-    const column = data?.column(value) ?? -1;
+  // the orbit at a value, or that which is near: {column, start}
+  choose(value, near = null) {
+    const column = near?.column ?? data?.column(value) ?? -1;
     state.line = line = column >= 0 && data.axis ? data.axis[column] : value;
-    start = from;
+    state.start = near?.start ?? state.start;
     forgetWhy();
     askOrbit();
     state.write();
     redraw();
   },
-  hover(value) {
-    const column = value === null ? -1 : data?.column(value) ?? -1;
-    $("under").textContent = column < 0 ? "" : underPointer(column);
-    if (column < 0 || !trailing() || value === null || data.axis[column] === line) return;
-    actions.choose(value);
+  hover(near) {
+    $("under").textContent = near ? underPointer(near) : "";
+    if (!near || !trailing() || (data.axis[near.column] === line && near.start === state.start)) return;
+    actions.choose(data.axis[near.column], near);
   },
   move(by) {
     const column = data?.column(line ?? (state.view.low + state.view.high) / 2) ?? 0;
@@ -348,7 +394,7 @@ const actions = {
     why = { reason: "its periodic orbit is being followed", value: line };
     showWhy();
     soon();
-    askedWhy = link.ask("window", { view: requestOf(state.view), value: line, start, column: columnOfOrbit() });
+    askedWhy = link.ask("window", { view: requestOf(state.view), value: line, start: state.start, column: columnOfOrbit() });
   },
 };
 
@@ -358,14 +404,15 @@ $("presets").addEventListener("change", (event) => event.target.value && open({ 
 $("axis").addEventListener("change", (event) => {
   const number = model.numbers.find((one) => one.name === event.target.value);
   let { low, high } = number;
-  if (number.log) [low, high] = [0.7, 1.4].map((part) => Number((controls.rows.get(number.name).value * part).toPrecision(4)));
+  const shown = controls.rows.get(number.name).value * number.scale;
+  if (number.log) [low, high] = [0.7, 1.4].map((part) => Number((shown * part).toPrecision(4)) / number.scale);
   if (line !== null) { // the number that was swept stays where the orbit is
     state.view.numbers[state.view.axis] = line;
     controls.set(state.view.axis, line, false);
   }
   state.begin({ ...state.view, axis: number.name, low, high });
   fitNext = true;
-  line = null;
+  line = data = null;
   panel.clear();
   controls.mark(number.name);
   request();
@@ -382,12 +429,12 @@ $("dynamics").addEventListener("change", (event) => {
 $("start").addEventListener("change", (event) => {
   const { follow, random, seed, ...rest } = state.view.start, value = event.target.value;
   state.view.start = { state: rest, random: { random: 4, seed: seed ?? 0 } }[value] ?? { ...rest, follow: value };
-  start = 0;
+  state.start = 0;
   request();
 });
 for (const id of ["low", "high"]) {
   $(id).addEventListener("change", () => {
-    const low = Number($("low").value), high = Number($("high").value);
+    const [low, high] = ["low", "high"].map(endTyped);
     if ($("low").value === "" || $("high").value === "" || !(high > low)) return say("The range must rise: from a smaller to a greater number.", true);
     state.go(low, high, state.range);
     request();

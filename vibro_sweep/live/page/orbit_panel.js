@@ -3,6 +3,7 @@
 import { drawMasses } from "./film.js";
 import { paragraph } from "./orbit_words.js";
 import { at, axes, clipped, dot, horizontal, polyline, prepare, pressed, scales, stops, vertical } from "./small_plots.js";
+import { RATIO } from "./units.js";
 
 const LONGEST = 12; // forcing periods of a time history; the next ones follow while the masses move
 const PERIODS_A_SECOND = 0.4;
@@ -78,7 +79,7 @@ export class OrbitPanel {
     const span = Math.min(LONGEST, one.periods), first = span * Math.floor(this.clock / span);
     const view = { low: first, high: first + span, ...vertical(one.gap) };
     const { x, y } = scales(box, view);
-    axes(context, box, view, "t/T", names(one)[0], theme);
+    axes(context, box, view, { name: "t/T", ...RATIO }, names(one)[0], theme);
     clipped(context, box, () => {
       stops(context, one, view, x, y, theme);
       const repeats = one.periods === one.period; // and not a part of a longer orbit
@@ -160,5 +161,6 @@ function prepared(orbit) {
 }
 
 function names(one) {
-  return one.gapIsFirst ? ["x1", "v1"] : ["gap", "velocity of the gap"];
+  const [gap, velocity] = one.gapIsFirst ? ["x1", "v1"] : ["gap", "velocity of the gap"];
+  return [{ name: gap, ...one.units.gap }, { name: velocity, ...one.units.gap_velocity }];
 }

@@ -2,6 +2,7 @@
 
 import { ticks } from "./axes.js";
 import { themeOf } from "./drawing.js";
+import { titled } from "./units.js";
 
 const PAD = { left: 58, right: 8, top: 8, bottom: 30 };
 
@@ -22,7 +23,7 @@ export function prepare(canvas, pad = 0) {
 function extent(values) {
   let low = Infinity, high = -Infinity;
   for (const v of values) [low, high] = [Math.min(low, v), Math.max(high, v)];
-  const half = Math.max(0.55 * (high - low), 0.01 * Math.max(Math.abs(low), Math.abs(high)), 1e-3), centre = (low + high) / 2;
+  const half = Math.max(0.55 * (high - low), 0.01 * Math.max(Math.abs(low), Math.abs(high)), 1e-12), centre = (low + high) / 2;
   return [centre - half, centre + half];
 }
 
@@ -43,6 +44,7 @@ export function scales(box, view) {
   };
 }
 
+// across, up : what is on the axes, with `name`, `unit` and `scale`
 export function axes(context, box, view, across, up, theme) {
   const { x, y } = scales(box, view);
   context.strokeStyle = theme.line;
@@ -52,17 +54,21 @@ export function axes(context, box, view, across, up, theme) {
   context.font = "10px system-ui, sans-serif";
   context.textAlign = "center";
   context.textBaseline = "top";
-  for (const one of ticks(view.low, view.high, box.w / 50).list) context.fillText(one.text, x(one.at), box.y + box.h + 3);
-  context.fillText(across, box.x + box.w / 2, box.y + box.h + 16);
+  for (const one of scaled(view.low, view.high, across, box.w / 50)) context.fillText(one.text, x(one.at), box.y + box.h + 3);
+  context.fillText(titled(across.name, across), box.x + box.w / 2, box.y + box.h + 16);
   context.textAlign = "right";
   context.textBaseline = "middle";
-  for (const one of ticks(view.bottom, view.top, box.h / 40).list) context.fillText(one.text, box.x - 3, y(one.at));
+  for (const one of scaled(view.bottom, view.top, up, box.h / 40)) context.fillText(one.text, box.x - 3, y(one.at));
   context.save();
   context.translate(7, box.y + box.h / 2);
   context.rotate(-Math.PI / 2);
   context.textAlign = "center";
-  context.fillText(up, 0, 0);
+  context.fillText(titled(up.name, up), 0, 0);
   context.restore();
+}
+
+function scaled(low, high, { scale }, most) {
+  return ticks(low * scale, high * scale, most).list.map(({ at, text }) => ({ at: at / scale, text }));
 }
 
 export function stops(context, one, view, x, y, theme) {

@@ -1,5 +1,7 @@
 // Pointer, wheel and keys on the diagram: zoom, move, choose an orbit.
 
+import { orbitNear } from "./nearest.js";
+
 const CLICK = 5; // pixels that a click may move
 const ZOOM = 1.0015; // a unit of the wheel
 const PAUSE = 500; // ms, after which turning the wheel is another step to go back
@@ -20,6 +22,7 @@ export function steer(canvas, actions) {
     const { dots } = drawing.place, [bottom, top] = state.range;
     return top - ((top - bottom) * (y - dots.y)) / dots.h;
   };
+  const near = ([x, y]) => orbitNear(actions.data(), drawing, state, x, y);
   const ready = () => state.view && state.range && drawing.place;
   const inDots = ([x, y]) => {
     const { dots, exponents } = drawing.place;
@@ -32,7 +35,7 @@ export function steer(canvas, actions) {
     down = { at: place(event), pan: event.button === 1 || event.shiftKey, view: { ...state.view }, range: [...state.range], moved: false, pushed: false };
   });
   canvas.addEventListener("pointermove", (event) => {
-    if (!down) return ready() && actions.hover(inDots(place(event)) ? value(place(event)[0]) : null);
+    if (!down) return ready() && actions.hover(inDots(place(event)) ? near(place(event)) : null);
     const [x, y] = place(event), [x0, y0] = down.at;
     if (!down.moved && Math.hypot(x - x0, y - y0) < CLICK) return;
     down.moved = true;
@@ -49,7 +52,7 @@ export function steer(canvas, actions) {
     const [x, y] = place(event), [x0, y0] = down.at, { moved, pan } = down;
     down = null;
     actions.setRectangle(null);
-    if (!moved) return actions.choose(value(x), nearest(actions.data(), value(x), height(y)));
+    if (!moved) return actions.choose(value(x), near([x, y]));
     if (pan) return;
     const { dots } = drawing.place, clamp = (v) => Math.max(dots.x, Math.min(dots.x + dots.w, v));
     const across = [value(clamp(x0)), value(clamp(x))].sort((a, b) => a - b);
@@ -106,17 +109,4 @@ export function steer(canvas, actions) {
     if (event.key === "ArrowLeft") actions.back();
     else actions.forward();
   });
-}
-
-function nearest(data, value, height) {
-  // the start whose orbit has the point that is nearest to the click
-  if (!data || data.starts === 1) return 0;
-  const column = data.column(value);
-  let best = 0, least = Infinity;
-  for (let s = 0; s < data.starts; s++) {
-    for (const y of data.dots[column * data.starts + s] ?? []) {
-      if (Math.abs(y + data.middle - height) < least) [least, best] = [Math.abs(y + data.middle - height), s];
-    }
-  }
-  return best;
 }

@@ -10,6 +10,7 @@ export class ViewState {
     this.past = [];
     this.coming = [];
     this.line = null;
+    this.start = 0; // which of the starts that a value has: 0 up and 1 down, or the number of a random one
   }
 
   begin(view) {
@@ -57,8 +58,8 @@ export class ViewState {
 
   // the fragment of the address; the token is not a part of it
   fragment() {
-    const { view, range, home, line } = this;
-    return `#${encodeURIComponent(JSON.stringify({ view, range, home, line }))}`;
+    const { view, range, home, line, start } = this;
+    return `#${encodeURIComponent(JSON.stringify({ view, range, home, line, start }))}`;
   }
 
   write() {

@@ -1,6 +1,6 @@
 // Why a window ends: the branches that are drawn, and words.
 
-import { short, shown } from "./axes.js";
+import { measured } from "./units.js";
 
 // the arrays of each branch, one behind the other
 export function branchesOf({ arrays, branches = [] }) {
@@ -14,11 +14,13 @@ export function branchesOf({ arrays, branches = [] }) {
   });
 }
 
-export function wordsOfWindow(why, axis) {
-  if (why.reason) return [paragraph(`At ${axis} = ${shown(why.value)}: ${why.reason}.`)];
-  const end = (one, side) => paragraph(`${side} end ${shown(one.value)}${one.error ? ` ± ${short(one.error, 1)}` : ""}: ${one.type}, ${one.text}`);
+// quantity : unit and scale of the swept number
+export function wordsOfWindow(why, axis, quantity) {
+  if (why.reason) return [paragraph(`At ${axis} = ${measured(why.value, quantity)}: ${why.reason}.`)];
+  const error = (one) => (one.error ? ` ± ${measured(one.error, quantity, 1)}` : "");
+  const end = (one, side) => paragraph(`${side} end ${measured(one.value, quantity)}${error(one)}: ${one.type}, ${one.text}`);
   const kind = `${why.itinerary || `without ${why.event}s`}, period ${why.period}${why.symmetric ? ", symmetric" : why.mirrored ? ", or its mirror image" : ""}`;
-  const others = why.specials.filter((one) => one.type !== "boundary").map((one) => `${one.type} at ${short(one.value, 8)}`);
+  const others = why.specials.filter((one) => one.type !== "boundary").map((one) => `${one.type} at ${measured(one.value, quantity, 8)}`);
   return [
     paragraph(`Window of the orbit ${kind}:`), end(why.low, "lower"), end(why.high, "upper"),
     paragraph(`On its branch, stable (solid) or not (dashed): ${others.join(", ") || "no special point"}.`),
