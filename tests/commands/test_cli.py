@@ -75,7 +75,8 @@ def test_grazing(scene_folder, capsys):
 def test_grazing_curve_of_a_frequency_sweep(scene_folder, capsys):
     (scene_folder / "plane.yaml").write_text(scene("sweep: {omega: {values: [0.6, 0.63]}, b: {values: [5, 6]}}"))
     assert main(["grazing", "plane.yaml"]) == 0
-    header, first, last = capsys.readouterr().out.splitlines()
+    filled, header, first, last = capsys.readouterr().out.splitlines()
+    assert filled == "# the gap is just filled at omega = 0.612731647564"
     assert header == "# omega b* tau*" and first.startswith("0.6 ")
     omega, b, tau = map(float, last.split())
     assert omega == 0.63 and abs(b - 6.70571674097302) < 1e-13 and abs(tau - 2.229306509033) < 1e-12
@@ -120,7 +121,10 @@ def test_grazing_of_one_stop(scene_folder, capsys, stops, where, sign):
 def test_run_then_look(scene_folder, capsys):
     assert main(["run", "good.yaml", "--plot"]) == 0
     captured = capsys.readouterr()
-    assert captured.out.startswith("good.h5: 3 points in ") and "all ok" in captured.out and captured.err == ""
+    machine, (line, *_) = captured.out.splitlines()[:5], captured.out.splitlines()[5:]
+    assert machine[0].startswith("  machine   natural frequencies 0.6526, 1.084 (as omega)") and len(machine) == 5
+    assert "without contact: nowhere in 6.5 to 6.7; from 6.706 on" in machine[3]
+    assert line.startswith("good.h5: 3 points in ") and line.endswith("all ok") and captured.err == ""
     assert {path.name for path in scene_folder.iterdir()} >= {"good.yaml", "good.h5", "good.png"}
     assert main(["info", "good.h5"]) == 0
     lines = capsys.readouterr().out.splitlines()

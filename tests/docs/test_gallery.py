@@ -45,6 +45,6 @@ def words(schema, key: str) -> set[str]:
     if not isinstance(schema, dict):
         return set()
     there = schema.get("properties", {}).get(key, {})
-    options = there.get("anyOf", [there])
+    options = there.get("anyOf", there.get("oneOf", [there]))
     here = {word for option in options for word in (*option.get("enum", []), option.get("const")) if word}
     return here.union(*(words(inner, key) for inner in schema.values()))

@@ -42,14 +42,14 @@ def test_rules_of_cf_and_netcdf(kinds, name):
                 if attribute not in SCALES:
                     assert np.ndim(value) <= 1, attribute  # netCDF has no others
         for key, one in variables.items():
-            assert NAME.fullmatch(key) and one.attrs["units"].decode() in UNITS and one.attrs["long_name"]
+            assert NAME.fullmatch(key) and one.attrs["units"] in UNITS and one.attrs["long_name"]
             dimensions = [dimension[0].name[1:] for dimension in one.dims] if not one.is_scale else [key]
             assert len(dimensions) == one.ndim == len(set(dimensions)) and set(dimensions) <= {*lengths, *variables}
             for coordinate in one.attrs.get("coordinates", b"").decode().split():  # CF 5
                 along = {dimension[0].name[1:] for dimension in variables[coordinate].dims}
                 assert along <= set(dimensions) and coordinate not in dimensions
             if "flag_values" in one.attrs:  # CF 3.5
-                values, words = one.attrs["flag_values"], one.attrs["flag_meanings"].decode().split()
+                values, words = one.attrs["flag_values"], one.attrs["flag_meanings"].split()
                 assert values.dtype == one.dtype and len(values) == len(words) == len(set(values.tolist()))
         if name in RAGGED:  # CF 9.3.3
             counted = {

@@ -105,7 +105,7 @@ def test_everything_is_described(made):
                 assert dimension[0].shape == (dataset.shape[[*dataset.dims].index(dimension)],)
         status = file["status"]
         assert status.dtype == np.int8 and status.attrs["flag_values"].dtype == np.int8
-        words = status.attrs["flag_meanings"].decode().split(" ")
+        words = status.attrs["flag_meanings"].split(" ")
         assert dict(zip(words, status.attrs["flag_values"].tolist(), strict=True)) == STATUSES
 
 

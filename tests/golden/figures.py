@@ -7,6 +7,7 @@ from contextlib import chdir
 from functools import cache
 from unittest.mock import patch
 
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from support.programs import ended
 
@@ -39,7 +40,8 @@ def result_of(case: dict) -> list[dict]:
 
 def figure_of(case: dict) -> Figure:
     """What a call in Python draws."""
-    return eval(case["call"], {"vs": vs, "data": Data(), "paper": PAPER, "Figure": Figure})
+    shown = eval(case["call"], {"vs": vs, "data": Data(), "paper": PAPER, "Figure": Figure})
+    return shown.figure if isinstance(shown, Axes) else shown  # where it was drawn into axes
 
 
 def _by_command(case: dict) -> list[Figure]:

@@ -8,10 +8,10 @@ from golden import answers, checking, figures, files, records, shown, sweeps
 from golden.drawn import described
 from golden.scenes import computed
 
-CASES = {"sweeps": 25, "files": 15, "figures": 91, "answers": 19}
+CASES = {"sweeps": 25, "files": 16, "figures": 94, "answers": 19}
 FAST = {  # those that the fast tests compare
     "sweeps": ("section alone, from a state", "followed up and down", "attractors of random starts"),
-    "files": ("sweep", "unfinished"),
+    "files": ("sweep", "unfinished", "frequency"),
     "figures": (
         'vs.plot(data["sweep"])',
         'vs.plot(data["attractors"])',
@@ -20,6 +20,7 @@ FAST = {  # those that the fast tests compare
         'vs.plot(data["orbits"], "history")',
         'vs.plot(data["contacts"], "contact-force", at=dict(b=0.6))',
         'vs.plot(data["units"])',
+        'vs.plot(data["units"], units="mm, Hz")',
         'vs.plot(data["file sweep"], windows=data["file windows"])',
     ),
     "answers": ("a page", "a diagram", "a saved scene", "what cannot be computed"),

@@ -16,6 +16,7 @@ from vibro_sweep.engine.simd.kernel_cache import ENGINE, SHARED
 from vibro_sweep.oscillator.catalogue import OF_A_SYSTEM
 from vibro_sweep.oscillator.models import MODELS
 from vibro_sweep.oscillator.models.two_mass import NAMES
+from vibro_sweep.oscillator.other_words import own_name
 from vibro_sweep.scene import resolved_numbers
 from vibro_sweep.tables.coordinates import MOST_MASSES
 from vibro_sweep.tables.observables import DIMENSIONS, VARIABLES
@@ -84,7 +85,10 @@ def test_every_example_has_its_numbers():
         scene = vs.load_scene(path)
         kinds = (resolved_numbers.attributes, resolved_numbers.dimensions, resolved_numbers.matrices)
         known = {name for numbers in kinds for name in numbers(scene)} | {*scene.sweep}
-        needed = {name for name, value in scene.system.numbers.items() if value not in (None, 0.0)}
+        usual = (None, 0.0)
+        numbers = scene.system.numbers.items()
+        needed = {x for x, value in numbers if value not in usual and value != resolved_numbers.USUAL.get(x)}
+        needed = {name for name in needed if name not in map(own_name, scene.sweep)}
         needed |= {name for name, value in scene.system.options.items() if value is not None}
         needed -= {"units"}  # which each variable has
         assert {*needed, "transient", "record"} <= known, path.name

@@ -7,7 +7,7 @@ from support import cases, refusals
 
 import vibro_sweep as vs
 
-NUMBER = {"scene": 284, "command": 75, "call": 515}
+NUMBER = {"scene": 282, "command": 75, "call": 511}
 ROWS = cases.rows("messages")
 
 

@@ -127,7 +127,7 @@ def calls(made: dict[str, Any]) -> dict[str, Call]:
     parameter = each("parameter", "b", np.str_("b"))
     step = each("step", 1.0, 2, np.float64(0.5))
     how = each("workers", None, 1, 2) | each("mode", "new", "overwrite", "resume")
-    how |= each("output", "out.h5", Path("out.h5")) | each("progress", None, print_nothing)
+    how |= each("output", "out.h5", Path("out.h5")) | each("progress", None, print_nothing, False)
     width = each("width", None, 85, np.float64(178.0))
     axes = each("axes", {"b": [6.5, 6.6]}, {"b": np.array([6.5, 6.6])}, {"b": (6.5,)}, {"b": xr.DataArray([6.5, 6.6])})
     axes["axes"] += [{"axes": {"b": {"start": 6.5, "stop": 6.6, "num": 2}}}, {"axes": {"b": range(6, 8)}}]
@@ -138,6 +138,11 @@ def calls(made: dict[str, Any]) -> dict[str, Call]:
     observe = each("observe", ["section"], {"section"}, ("section", "impacts"), (word for word in ["section"]))
     observe["observe"][-1] = {"observe": np.array(["section"])}
     trajectory = each("trajectory", None, {"periods": 1, "samples": 3})
+    steps = np.eye(6) - np.eye(6, k=1)
+    bar = each("M", np.eye(6), np.eye(6).tolist()) | each("K", steps.T @ steps) | each("C", None, np.eye(6))
+    bar |= each("modes", 2, 1.0) | each("contact_normal", [1, 0, 0, 0, 0, 0], np.ones(6)) | each("force", 0, np.ones(6))
+    bar |= each("force_cos", 0) | each("constant", 0, [0.0, 1, 0, 0, 0, 0]) | each("modal_damping", None)
+    bar |= {"options": [{}]} | each("omega", 1, np.float64(1.5)) | each("R", 0.5, 1) | each("b", 1, 0.5)
     of_contact = {"contact_normal": [{"contact_normal": [1, 0]}, {"contact_normal": np.array([1.0])}]}
     of_contact |= each("b", 1, np.float64(0.5)) | each("offset", 0.0, 1) | each("R", 0.8, 1) | each("R_left", None, 0.5)
     of_contact |= each("stops", "both", "left") | OF_STOPS
@@ -150,12 +155,20 @@ def calls(made: dict[str, Any]) -> dict[str, Call]:
         "System": Call(vs.System, of_system),
         "System.physical": Call(vs.System.physical, of_physical),
         "System.replace": Call(SYSTEM.replace, any_of("changes", of_system)),
-        "Oscillator": Call(vs.Oscillator, pair | each("contacts", None)),
+        "Oscillator": Call(
+            vs.Oscillator,
+            pair | each("contacts", None)
+            | {"frequency": [{"frequency": None}, {"frequency": 0.1, "omega": None}]}
+            | {name: [{name: None}, {name: 1.0, "b": None}] for name in ("stop_right", "stop_left")},
+        ),
         "Contact": Call(vs.Contact, of_contact),
+        "Oscillator.reduced": Call(vs.Oscillator.reduced, bar),
+        "System.reduced": Call(vs.System.reduced, bar),
         "Oscillator.named": Call(vs.Oscillator.named, of_model),
         "System.named": Call(vs.System.named, of_model),
         "Oscillator.replace": Call(made["Oscillator"].replace, any_of("changes", of_pair)),
         "grazing": Call(vs.grazing, system),
+        "quiet": Call(vs.quiet, system | parameter | each("bounds", (6, 7), [6.5, 7], np.array([1.0, 7.0]))),
         "simulate": Call(
             vs.simulate,
             system | state | each("periods", 1, 2.0, np.array(1)) | each("start_time", 0.0, 1, np.float32(1)),
@@ -177,7 +190,8 @@ def calls(made: dict[str, Any]) -> dict[str, Call]:
             | {"state": [{"state": None}, *({"state": one, "guess": None} for one in (REST, np.zeros(4)))]}
             | each("periods", 1, 2.0)
             | {"itinerary": [{"itinerary": None}, {"itinerary": "", "guess": None}, {"itinerary": "LLLRRR"}]}
-            | each("guess", impacts(orbit), np.array(impacts(orbit)), [list(one) for one in impacts(orbit)]),
+            | each("guess", impacts(orbit), np.array(impacts(orbit)), [list(one) for one in impacts(orbit)])
+            | each("which", 0, 0.0),
         ),
         "PeriodicOrbit.sample": Call(orbit.sample, times),
         "PeriodicOrbit.plot": Call(orbit.plot, each("kind", None) | width),
@@ -211,7 +225,7 @@ def calls(made: dict[str, Any]) -> dict[str, Call]:
                 "changes",
                 each("system", SYSTEM) | {"sweep": [{"sweep": one["axes"]} for one in axes["axes"]]} | observe | start
                 | short | section | trajectory | each("dynamics", "flow") | each("order", None)
-                | each("expand_at", None) | each("picture", None, "bifurcation"),
+                | each("expand_at", None) | each("picture", None, "bifurcation") | each("picture_units", ()),
             ),
         ),
         "Scene.to_yaml": Call(scene.to_yaml, {}),
@@ -247,7 +261,8 @@ def calls(made: dict[str, Any]) -> dict[str, Call]:
             | each("at", None, {}, {"b": np.float32(6.5)}) | each("variable", None, "v1", np.str_("x1")) | width
             | each("xlim", None, (6.5, 6.6), np.array([6.5, 6.6])) | each("ylim", None, [0, 1]) | each("size", None)
             | each("dpi", None, 100, np.float32(80)) | each("windows", None) | each("over", None)
-            | each("relative", False, np.bool_(False)) | each("output", None, "new.png", Path("new.svg"))
+            | each("relative", False, np.bool_(False)) | each("units", None, "", [])
+            | each("points", None, {"b": [6.5], "x1": [2.0]}) | each("output", None, "new.png", Path("new.svg"))
             | each("overwrite", False, True),
         ),
     }  # fmt: skip

@@ -27,7 +27,7 @@ def assert_same(one, other):
         if field.name == "sweep":
             assert list(one.sweep) == list(other.sweep)
             assert all(np.array_equal(one.sweep[key], other.sweep[key]) for key in one.sweep)
-        elif field.name not in ("name", "as_written", "source"):
+        elif field.name not in ("name", "as_written", "source", "system_file"):
             assert getattr(one, field.name) == getattr(other, field.name), field.name
 
 
@@ -37,7 +37,10 @@ def assert_same(one, other):
 @pytest.mark.parametrize("path", SCENES, ids=lambda path: path.stem)
 def test_yaml_and_back(path):
     one = vs.load_scene(path)
-    assert one.text == path.read_text()
+    if one.system_file is None:
+        assert one.text == path.read_text()
+    else:  # with the numbers of that file: a result must not depend on it
+        assert one.text == one.to_yaml()
     assert_same(parsed(one.to_yaml()), one)
 
 
