@@ -17,6 +17,14 @@ SEARCH = """
 system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 6}
 continue: {from: {itinerary: LR}, parameter: {b: [2, 6.5]}, follow: [pitchfork, graze], depth: 1}
 """
+FREQUENCY = """
+system: {type: chain, m: [2.4], k: [9500, 0], c: [3, 0], force: [40], k_stop: 180000, c_stop: 45, stop_right: 0.0015,
+  units: SI}
+sweep: {frequency: {values: [7, 12, 21, 24]}}
+orbit: {transient: 600, record: 12}
+observe: [section, contacts]
+picture: {kind: contacts, units: [mm, Hz]}
+"""
 PART = """
 system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8}
 sweep: {R: {values: [0.7, 0.8]}, b: {values: [6.5, 6.6, 6.7]}}
@@ -50,6 +58,7 @@ def all_files(report) -> list[dict]:
     ]
     cases += [
         _case("search", "search.h5", "run", SEARCH),
+        _case("frequency", "frequency.h5", "run", FREQUENCY),
         _case("unfinished", "unfinished.h5.part", "broken off", PART),
     ]
     cases += [_case(name, f"{name}.{'json' if 'orbit' in name else 'h5'}", "saved") for name in files.SAVED]
