@@ -69,7 +69,7 @@ def test_a_saved_scene_keeps_its_units_and_the_numbers_of_its_system(page):
     asked["scene"]["picture"] = {"units": ["apples"]}
     page.send(json.dumps({"type": "save", "seq": 4, "view": asked}))
     words, _ = decoded(page.recv())
-    assert words["type"] == "error" and "names of units" in words["text"]
+    assert words["type"] == "error" and "apples is no unit here" in words["text"]
 
 
 @pytest.mark.parametrize("y", ["contact_force_max", "penetration_max"])

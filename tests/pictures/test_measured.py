@@ -61,7 +61,7 @@ def test_points_in_a_plane_and_along_branches():
         ({"frequency": [1.0]}, "must have two columns at least"),
         ({"frequency": [1.0], "x1": [1.0, 2.0]}, "of one length"),
         ({"frequency": [1.0], "x1": ["a"]}, "holds other things than numbers"),
-        ({"frequency": [1.0], "x1 [kg]": [1.0]}, "has x1 in kg; it must be in mm"),
+        ({"frequency": [1.0], "x1 [kg]": [1.0]}, "has x1 in kg; it must be in mm, or a multiple of it"),
         (3, "the path of a CSV file, or columns by their names"),
     ],
 )
@@ -72,7 +72,16 @@ def test_what_are_no_points(data, points, said):
 
 
 @pytest.mark.parametrize(
-    "text, said", [("frequency,x1\n", "a line for each point"), ("frequency,x1\n9,up\n", "line 2: up")]
+    "text, said",
+    [
+        ("frequency,x1\n", "a line for each point"),
+        ("frequency,x1\n9,up\n", "line 2: up"),
+        ("frequency,x1\n9,5,-2\n10,5,-2\n", "line 2: 3 entries below 2 names; numbers with decimal commas need ;"),
+        ("frequency,x1,x1\n9,5,-2\n", "has two columns x1"),
+        ("frequency,omega,x1\n9,5,-2\n", "must have one of the columns omega and frequency"),
+        ("frequency,x1\n90,5\n95,1\n", "no point lies within the axis of frequency"),
+        ("frequency,x1\n9,inf\n", "no point lies within the axis of frequency"),
+    ],
 )
 def test_files_without_points(data, tmp_path, text, said):
     (tmp_path / "points.csv").write_text(text)

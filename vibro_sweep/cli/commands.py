@@ -135,7 +135,7 @@ def windows_command(
     A window is an interval on which one periodic orbit is stable. Each takes 15 to 300 ms, and each chaotic point 4000
     periods more, so a plane takes minutes. The sweep's file stays as it is.
     """
-    output, display = output or Path(f"{file.name.removesuffix('.h5')}.windows.h5"), display_option(units)
+    output, display = output or Path(f"{file.name.removesuffix('.h5')}.windows.h5"), display_option(units, as_json)
     command = ("windows", str(file), *(("--parameter", parameter) if parameter else ()))
     computation = Computation(output, workers, scheduler, resume, overwrite, plot, quiet, command)
     computation.announce()
@@ -241,7 +241,7 @@ def info(files: DataFiles, units: Units = None, as_json: Json = False):
     """
     from vibro_sweep.files.file_errors import StoreError
 
-    display = display_option(units)
+    display = display_option(units, as_json)
     if as_json:
         from .as_json import description_of
     else:

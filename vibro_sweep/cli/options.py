@@ -7,7 +7,7 @@ from pathlib import Path
 import typer
 from typer.models import OptionInfo
 
-from vibro_sweep.tables.units import NAMES, Display, display_of
+from vibro_sweep.tables.units import Display, display_of, why_no_display
 
 from .console import InputError
 
@@ -62,12 +62,14 @@ def executor_of(scheduler: str | None) -> contextlib.AbstractContextManager:
     return connected()
 
 
-def display_option(names: str | None) -> Display | None:
-    """The units of --units; None: those of the file."""
+def display_option(names: str | None, as_json: bool = False) -> Display | None:
+    """The units of --units; None: those of the file. Not with JSON, whose numbers are the stored ones."""
     if names is None:
         return None
+    if as_json:
+        raise InputError(f"--units {names}: leave it out with --json, whose numbers are those of the file")
     if (display := display_of(names)) is None:
-        raise InputError(f"--units {names}: write names of units, one of a kind, such as {NAMES}, with commas")
+        raise InputError(f"--units {names}: {why_no_display(names)}")
     return display
 
 

@@ -115,6 +115,7 @@ def sweep(
             system.compare_units(first | dict(zip(first, corner, strict=True)))
     quantities = layout.quantities(scene)
     reserved = {*quantities, *(dimension for quantity in quantities.values() for dimension in quantity.dimensions)}
+    reserved |= {"gap", "gap_velocity"}  # pictures form these of positions and velocities
     reserved |= {"start"} if scene.n_starts > 1 else set()
     for name in reserved.intersection(scene.sweep):
         raise ArgumentError(not_allowed("axes", name, f"of other names than {', '.join(sorted(reserved))}"))

@@ -78,7 +78,8 @@ def attributes_of(scene: Continuation, source: Source) -> dict[str, Any]:
     others = {name: value for name, value in source.system.parameters().items() if name not in free}
     ends = [source.system.replace(**{name: end}) for name, limits in scene.parameter.items() for end in limits]
     held = {k: v for k, v in others.items() if k != "tau" or all(end.parameters()["tau"] == v for end in ends)}
-    return {"parameters": list(scene.parameter)} | held | ({"source": source.run_id} if source.run_id else {})
+    shown = {"picture_units": ", ".join(scene.picture_units)} if scene.picture_units else {}
+    return {"parameters": list(scene.parameter)} | held | shown | ({"source": source.run_id} if source.run_id else {})
 
 
 def seeds_of(scene: Continuation, file: Pieces, pool: Executor | None) -> list[Seed]:

@@ -277,9 +277,9 @@ class DrawnSweep:
         ]
 
     def _label(self, place, start) -> str:
-        values = [equation(key, self.number(key, place)) for key in self.sweep]
+        values = [f"{equation(key, self.number(key, place))} {unit_text(self._unit_of(key))}" for key in self.sweep]
         name = self.starts[start]
-        return ", ".join([*values, *([name if self.follow else f"start {name}"] if name else [])])
+        return ", ".join([*map(str.strip, values), *([name if self.follow else f"start {name}"] if name else [])])
 
     def title(self, subject="") -> str:
         """The title: what is shown, the numbers that are the same at every point, and how much is there if not all."""

@@ -38,8 +38,9 @@ class Measured:
         elif written is not None and unit is not None:
             factor = ratio(written, unit)
             if factor is None:
+                shown = unit_text(unit) or "no unit"
                 raise PlotError(
-                    f"points: {self.name} has {key} in {written}; it must be in {unit_text(unit) or 'no unit'}"
+                    f"points: {self.name} has {key} in {written}; it must be in {shown}, or a multiple of it"
                 )
             values = values * factor
         return values
@@ -58,6 +59,8 @@ def measured(points: object) -> Measured:
     columns, units = {}, {}
     for head, column in items:
         name, unit = _name_and_unit(str(head))
+        if name in columns:
+            raise PlotError(f"points: there are two columns {cut(name)}")
         values = array_of(column if not hasattr(column, "to_numpy") else column.to_numpy(), 1)
         if values is None:
             raise PlotError(f"points: the column {cut(name)} holds other things than numbers")
@@ -77,8 +80,13 @@ def _of_file(path: Path) -> Measured:
     if len(rows) < 2:
         raise PlotError(f"points: {path} must have a line of names and a line for each point")
     names, units = zip(*map(_name_and_unit, rows[0]), strict=True)
+    if twice := [name for name in names if name and names.count(name) > 1]:
+        raise PlotError(f"points: {path} has two columns {cut(twice[0])}")
     numbers = np.full((len(rows) - 1, len(names)), np.nan)
     for i, row in enumerate(rows[1:]):
+        if len(row) > len(names) and any(map(str.strip, row[len(names) :])):
+            text = f"{len(row)} entries below {len(names)} names; numbers with decimal commas need ; between them"
+            raise PlotError(f"points: {path}, line {i + 2}: {text}")
         for j, word in enumerate(row[: len(names)]):
             try:
                 numbers[i, j] = float(word.replace(",", ".") if delimiter != "," else word)
@@ -97,6 +105,8 @@ def _name_and_unit(head: str) -> tuple[str, str]:
 def _checked(name: str, columns: dict[str, np.ndarray], units: dict[str, str]) -> Measured:
     if len(columns) < 2 or len({len(values) for values in columns.values()}) > 1:
         raise PlotError(f"points: {name} must have two columns at least, of one length, with names as frequency and x1")
+    if _OTHER.keys() <= columns.keys():
+        raise PlotError(f"points: {name} must have one of the columns {' and '.join(_OTHER)}")
     return Measured(name, columns, units)
 
 
@@ -107,6 +117,10 @@ def draw_measured(ax: Any, points: Measured | None, x: tuple[str, str | None], y
         return False
     frame = ax.get_xlim(), ax.get_ylim()
     places = points.values(*x), points.values(*y)
+    if not (np.isfinite(places).all(axis=0) & (min(frame[0]) <= places[0]) & (places[0] <= max(frame[0]))).any():
+        ends = " to ".join(f"{end:.6g}" for end in frame[0])
+        text = f"no point lies within the axis of {x[0]}, {ends} {unit_text(x[1])}".rstrip()
+        raise PlotError(f"points: {points.name}: {text}")
     ax.plot(*places, label="measured", gid="measured", **STYLE)
     low, high = np.nanmin(places[1], initial=frame[1][0]), np.nanmax(places[1], initial=frame[1][1])
     room = 0.02 * (high - low)

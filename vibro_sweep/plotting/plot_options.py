@@ -19,7 +19,7 @@ from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.plotting.figure import Panels, Picture, page, style_of
 from vibro_sweep.plotting.measured import Measured, measured
 from vibro_sweep.plotting.source import PlotError
-from vibro_sweep.tables.units import NAMES, Display, display_of
+from vibro_sweep.tables.units import Display, display_of, why_no_display
 
 if TYPE_CHECKING:
     import xarray
@@ -55,7 +55,9 @@ class PlotOptions:
     def __post_init__(self) -> None:
         check_type("variable", self.variable, (str, NoneType), "the name of a variable, or None")
         if self.units is not None and display_of(self.units) is None:
-            raise PlotError(not_allowed("units", self.units, f"names of units, one of a kind, such as {NAMES}"))
+            raise PlotError(
+                not_allowed("units", self.units, f"names of units, one of a kind; {why_no_display(self.units)}")
+            )
         columns = None if self.points is None or isinstance(self.points, Measured) else measured(self.points)
         vars(self).update({"points": columns} if columns is not None else {})
         checked: dict[str, Any] = {"at": _place(self.at), "relative": checked_flag("relative", self.relative)}

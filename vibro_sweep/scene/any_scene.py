@@ -87,7 +87,7 @@ def parsed(text: str, name: str, source: Path | None, scene_of: Callable[[object
     try:
         data = read_yaml(text)
         if isinstance(data, dict) and isinstance(data.get("system"), str) and source is not None:
-            other = source.parent / data["system"]
+            other = (Path() if source.parent == Path("/dev") else source.parent) / data["system"]  # of /dev/stdin
             data = data | {"system": _system_in(other)}
         scene = scene_of(data, name)
     except YAMLTextError as error:

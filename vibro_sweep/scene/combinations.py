@@ -9,7 +9,8 @@ from vibro_sweep.oscillator.oscillator import Oscillator
 from vibro_sweep.oscillator.stops import DAMPER_ALONE, why_rigid
 from vibro_sweep.tables.exponents import LEAST_RECORD
 from vibro_sweep.tables.observables import WORDS
-from vibro_sweep.tables.units import NAMES, display_of
+from vibro_sweep.tables.parameters import CYCLES, STOP_LEFT, STOP_RIGHT
+from vibro_sweep.tables.units import display_of, why_no_display
 
 from .fields import Form
 from .problems import problem
@@ -30,12 +31,15 @@ def combination_problems(form: Form, data: dict, system: Oscillator | None) -> l
         problems.append(problem("section.stop", section.stop, f"the system has no such stop (stops: {stops})"))
     if section.kind == "phase" and "stop" in section.model_fields_set:
         problems.append(problem("section.stop", section.stop, "belongs to `kind: impact`; leave it out"))
-    units = getattr(form.picture, "units", None)
-    if units is not None and display_of(units) is None:
-        text = f"must be a list of names of units, one of a kind, such as {NAMES}"
-        problems.append(problem("picture.units", units, text))
-    elif units and system is not None and system.units is None:
-        problems.append(problem("picture.units", units, "the system has no units; give it some, by `units`"))
+    written = data.get("system") if isinstance(data.get("system"), Mapping) else {}
+    stands = [key for key in (STOP_RIGHT.name, STOP_LEFT.name) if key in written]
+    if stands and "stops" in written:
+        text = f"must be left out where {stands[0]} is given, in place of which it stands"
+        problems.append(problem("system.stops", stops, text))
+    if "physical" in written and form.sweep and CYCLES.name in form.sweep.model_fields_set:
+        text = "is nondimensional beside `physical`, where frequency is in Hz; sweep omega"
+        problems.append(problem(f"sweep.{CYCLES.name}", data["sweep"][CYCLES.name], text))
+    problems += units_problems(getattr(form.picture, "units", None), system)
     if getattr(form.trajectory, "from", "end") == "start" and hasattr(form.start, "follow"):
         text = "orbits that follow the sweep begin where the last one ended; leave it out, or give one start"
         problems.append(problem("trajectory.from", "start", text))
@@ -43,6 +47,15 @@ def combination_problems(form: Form, data: dict, system: Oscillator | None) -> l
         text = f"nothing would be computed; name some of {', '.join(WORDS)}, or ask for a trajectory"
         problems.append(problem("observe", [], text))
     return problems
+
+
+def units_problems(units: list[str] | None, system: Oscillator | None) -> list[str]:
+    """What is wrong with the units of pictures, where there are any."""
+    if units is not None and display_of(units) is None:
+        return [problem("picture.units", units, why_no_display(units))]
+    if units and system is not None and system.units is None:
+        return [problem("picture.units", units, "the system has no units; give it some, by `units`")]
+    return []
 
 
 def _settle_problems(orbit: Form) -> list[str]:

@@ -14,6 +14,7 @@ from vibro_sweep.tables.coordinates import state
 from vibro_sweep.tables.parameters import CYCLES, FREQUENCY
 
 from .any_scene import AnyScene, parsed
+from .combinations import units_problems
 from .continue_form import ORIGINS
 from .data import InvalidValue
 from .fields import Form
@@ -39,6 +40,7 @@ class Continuation(AnyScene):
     parameter : name -> (lo, hi) of the number that changes, or of two in the order of the text
     of : types of the curves in two numbers
     follow, depth : special points from which other branches are followed, and how far
+    picture_units : names of units in which numbers are shown, whatever the system's are
 
     Examples
     --------
@@ -61,6 +63,7 @@ class Continuation(AnyScene):
     of: tuple[str, ...]
     follow: tuple[str, ...]
     depth: int
+    picture_units: tuple[str, ...] = ()
 
     def data(self) -> dict[str, Any]:
         """The data that its YAML holds; numbers that are the default are left out."""
@@ -133,7 +136,9 @@ def _data_of(attributes: Mapping[str, Any]) -> dict[str, Any]:
     if isinstance(parameter, dict) and len(parameter) == 2:
         body["of"] = _listed(attributes["of"])
     body |= {"follow": _listed(attributes["follow"]), "depth": attributes["depth"]}
-    return {"system": system_data(system, ()) if isinstance(system, Oscillator) else system, "continue": body}
+    data = {"system": system_data(system, ()) if isinstance(system, Oscillator) else system, "continue": body}
+    units = _listed(attributes["picture_units"])
+    return data if units in ([], None) else data | {"picture": {"units": units}}
 
 
 def _listed(words: object) -> object:
@@ -172,6 +177,8 @@ def _continuation_of(data: Any, name: str) -> Continuation:
             problems.append(
                 problem(f"system.{key}", value, f"must be in continue.parameter: {limits[0]:g} .. {limits[1]:g}")
             )
+    units = getattr(form.picture, "units", None)
+    problems += units_problems(units, system)
     if problems:
         raise SceneError(name, problems)
     begin = chosen[1]
@@ -180,7 +187,7 @@ def _continuation_of(data: Any, name: str) -> Continuation:
     origin = getattr(body, "from")
     return Continuation(
         Path(name).stem, system, chosen[0], begin, origin.periods, origin.special, origin.largest,
-        ranges, body.of, body.follow, body.depth,
+        ranges, body.of, body.follow, body.depth, tuple(units or ()),
     )  # fmt: skip
 
 

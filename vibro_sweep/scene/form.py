@@ -158,14 +158,19 @@ TrajectoryForm = create_model(
 )
 
 
-class PictureForm(Form):
-    """The picture that is drawn by default, and the units in which numbers are shown."""
+class UnitsForm(Form):
+    """The units in which numbers are shown."""
 
-    kind: Literal[tuple(PICTURES)] = Field(default=None, description="kind of picture, if the file has what it needs")
     units: list[str] = Field(
         default=None,
         description="units in which pictures, tables and the page show numbers, whatever the system's are: [mm, Hz]",
     )
+
+
+class PictureForm(UnitsForm):
+    """The picture that is drawn by default, and the units in which numbers are shown."""
+
+    kind: Literal[tuple(PICTURES)] = Field(default=None, description="kind of picture, if the file has what it needs")
 
 
 Picture = Annotated[
@@ -263,6 +268,7 @@ def continuation_form(name: str, masses: int) -> type[Form]:
         __base__=Form,
         __doc__="A scene of branches: what to follow.",
         system=(_systems([model]), Field(description="the oscillator")),
+        picture=(UnitsForm, Field(default=None, description="units in which pictures and tables show numbers")),
         **{"continue": (body, Field(description="branches of periodic orbits"))},
     )
 

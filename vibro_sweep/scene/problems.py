@@ -121,7 +121,7 @@ def _line(item, form, data) -> str:
         "float_type": "must be a number in the range of the floats" if beyond else "must be a number",
         "int_type": "must be a whole number",
         "finite_number": "must be a finite number",
-        "list_type": "must be a list of numbers",
+        "list_type": f"must be a list of {'names' if path.endswith('units') else 'numbers'}",
         "tuple_type": "must be a list of words",
         "string_type": "must be a text",
         "bool_type": "must be true or false",

@@ -26,6 +26,7 @@ _LONG = {  # as other programs write them
     "gram": "g", "meter": "m", "metre": "m", "second": "s", "newton": "N", "watt": "W", "hertz": "Hz", "radian": "rad",
     "kilo": "k", "centi": "c", "milli": "m", "micro": "\N{MICRO SIGN}", "nano": "n", "mega": "M",
 }  # fmt: skip
+LONGEST = 60  # characters of a name in a message
 NAMES = "kg, g, t, m, mm, in, s, ms, N, kN, Hz, rpm"  # some of them, for messages
 
 
@@ -235,6 +236,20 @@ def display_of(value: object) -> Display | None:
     if None in known or "rad" in words or len({*words}) < len(known):
         return None
     return Display({unit.word: unit for unit in known if unit is not None})
+
+
+def why_no_display(value: object) -> str:
+    """What is wrong with names of units that `display_of` refuses, and what to write."""
+    names = value.split(",") if isinstance(value, str) else value
+    known: dict[str, str] = {}
+    for name in names if isinstance(names, (list, tuple)) else ():
+        unit = named_unit(name.strip()) if isinstance(name, str) else None
+        if unit is None or unit.word == "rad":
+            return f"{str(name)[:LONGEST]} is no unit here; known are {NAMES}"
+        if unit.word in known:
+            return f"{known[unit.word]} and {name.strip()} are units of one kind; write one of each kind"
+        known[unit.word] = name.strip()
+    return f"write names of units, one of a kind, such as {NAMES}"
 
 
 def names_of(display: Display) -> str:
