@@ -17,12 +17,16 @@ from support.programs import ended
 
 import vibro_sweep as vs
 from golden import records
+from vibro_sweep.types import Branch
 from golden.shown import different
 
 OF_THE_RUN = ("history", "provenance", "heap", "identity", "source", "sweep")  # the last two: identities of other files
 OF_THE_FORMAT = ("format", "quantities")
 OF_HDF5 = ("DIMENSION_LIST", "REFERENCE_LIST", "CLASS", "NAME")
 PAPER = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=6)
+BALL = vs.Oscillator.named(
+    "one_mass", k=0, zeta=0, constant=-1, base=True, F=1.5, omega=1, R=0.5, b=0, stops="left", tau=0
+)
 MADE_BY = re.compile(r"(?<=\nmade by\n)(  \w+ .*\n)+")
 REPLACED = (
     (r"\d{4}-\d\d-\d\dT[\d:.+]+", "DATE"),
@@ -49,6 +53,7 @@ def pitchfork_curve():
 SAVED = {  # what `.save` writes
     "one branch": symmetric_branch,
     "one curve": pitchfork_curve,
+    "other periodic orbit": lambda: vs.periodic_orbit(BALL, itinerary="L", which=1),
     "periodic orbit": lambda: vs.periodic_orbit(PAPER.replace(b=1), itinerary="LLRR"),
 }
 
@@ -114,6 +119,8 @@ def result_of(path: Path) -> dict:
         with h5py.File(path) as file:
             result["layout"] = {name: _layout(file[name]) for name in file if isinstance(file[name], h5py.Dataset)}
             result["attrs"] = _attributes(file)
+    status, out, errors = ended("table", path)
+    result["table"] = out.partition("\n")[0] or errors
     with vs.open(path) as data:
         result["opened"] = {
             name: {"dims": list(variable.dims), "dtype": str(variable.dtype), "coordinate": name in data.coords}
@@ -190,7 +197,16 @@ def _loaded(result) -> dict:
     table = result.to_dataframe()
     rows = [[_plain(value) for value in row] for row in table.itertuples(index=False)]
     text = text_of(repr(result))
-    return {"class": type(result).__name__, "repr": text, "columns": list(table.columns), "rows": rows}
+    points = {"points": _points(result.points)} if isinstance(result, Branch) else {}
+    return {"class": type(result).__name__, "repr": text, "columns": list(table.columns), "rows": rows} | points
+
+
+def _points(data) -> dict:
+    """The variables of the points of a branch, and of its parameter the values at both ends."""
+    ((parameter, values),) = data.coords.items()
+    return {"variables": {name: list(x.dims) for name, x in data.variables.items()}} | {
+        str(parameter): values.values[[0, -1]].tolist()
+    }
 
 
 def _plain(value):
