@@ -17,8 +17,8 @@ from support.programs import ended
 
 import vibro_sweep as vs
 from golden import records
-from vibro_sweep.types import Branch
 from golden.shown import different
+from vibro_sweep.types import Branch
 
 OF_THE_RUN = ("history", "provenance", "heap", "identity", "source", "sweep")  # the last two: identities of other files
 OF_THE_FORMAT = ("format", "quantities")

@@ -29,6 +29,7 @@ def marked(ax):
         ("# x1 (m); frequency (kHz)\n0,0005; 0,009\n0,001; 0,011\n", [9, 11], [0.5, 1.0]),  # decimal commas
         (f"x1\tomega\n0.5\t{18 * np.pi}\n1.0\t{22 * np.pi}\n", [9, 11], [0.5, 1.0]),
         ("\ufefffrequency,x1\n9,0.5\n\n11,\n", [9, 11], [0.5, np.nan]),
+        ("frequency,x1,remark\n# upwards\n9,0.5,good\n11,1,\n", [9, 11], [0.5, 1.0]),
     ],
 )
 def test_points_of_a_file(data, tmp_path, text, x, y):
@@ -75,11 +76,12 @@ def test_what_are_no_points(data, points, said):
     "text, said",
     [
         ("frequency,x1\n", "a line for each point"),
-        ("frequency,x1\n9,up\n", "line 2: up"),
+        ("frequency,x1\n9,up\n", "line 2: up is not a number"),
         ("frequency,x1\n9,5,-2\n10,5,-2\n", "line 2: 3 entries below 2 names; numbers with decimal commas need ;"),
         ("frequency,x1,x1\n9,5,-2\n", "has two columns x1"),
         ("frequency,omega,x1\n9,5,-2\n", "must have one of the columns omega and frequency"),
         ("frequency,x1\n90,5\n95,1\n", "no point lies within the axis of frequency"),
+        (f'frequency,x1\n9,"{"1" * 200000}"\n', "field larger than field limit"),
         ("frequency,x1\n9,inf\n", "no point lies within the axis of frequency"),
     ],
 )

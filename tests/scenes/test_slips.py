@@ -9,7 +9,7 @@ import pytest
 from support import cases
 from support.programs import ended
 
-NUMBER = {"scene": 34, "command": 10, "python": 7}
+NUMBER = {"scene": 34, "command": 10, "python": 8}
 SLOW = {  # of the processes, those that take more than two seconds
     *("measured_points", "output_exists", "windows_without_sections"),
     *("sweep_of_an_unknown_name", "start_stop_number_as_values"),

@@ -23,7 +23,7 @@ def windows_table(arrays: Mapping, parameters: Mapping[str, str]) -> list[str]:
     parameter, *held = parameters
     first = np.append(0, np.cumsum(arrays["branch_row_size"]))
     lower, upper = np.asarray(arrays["window_lower"]), np.asarray(arrays["window_upper"])
-    words = [_short(word) for word in _words(arrays)]
+    words = [_short(word) for word in itineraries(arrays)]
     ends = ("ends with", "point")
     names = ("from", *ends, "to", *ends, "period", "impacts", "symmetric", "orbits", "other attractor")
     rows = [(*(parameters[name] for name in held), *names)]
@@ -49,11 +49,11 @@ def windows_table(arrays: Mapping, parameters: Mapping[str, str]) -> list[str]:
 
 def _families(arrays: Mapping) -> list[str]:
     """A line for each family of windows."""
-    branches, words = np.asarray(arrays["window_branch"]), _words(arrays)
-    itineraries, symmetric = [words[branch] for branch in branches.tolist()], np.asarray(arrays["window_symmetric"])
+    branches, words = np.asarray(arrays["window_branch"]), itineraries(arrays)
+    impacts, symmetric = [words[branch] for branch in branches.tolist()], np.asarray(arrays["window_symmetric"])
     lo, periods = np.asarray(arrays["window_lo"]), np.asarray(arrays["window_period"])
     lines = []
-    for family in families(itineraries, symmetric.tolist(), periods.tolist(), lo.tolist()):
+    for family in families(impacts, symmetric.tolist(), periods.tolist(), lo.tolist()):
         first, last = lo[family.windows[0]], lo[family.windows[-1]]
         kind = "symmetric, " if family.symmetric else ""
         listed = ", ".join(str(periods[w]) for w in family.windows)
@@ -64,7 +64,7 @@ def _families(arrays: Mapping) -> list[str]:
 def _unvisited(arrays: Mapping, parameters: Mapping[str, str]) -> list[str]:
     """A line for each stretch of a window on which the sweep shows other attractors only, with a start."""
     parameter, *held = parameters
-    words, branches = _words(arrays), np.asarray(arrays["window_branch"])
+    words, branches = itineraries(arrays), np.asarray(arrays["window_branch"])
     first = np.append(0, np.cumsum(arrays["branch_row_size"]))
     names = [
         name for name in arrays if name.startswith("unvisited_") and name.removeprefix("unvisited_") not in UNVISITED
@@ -112,7 +112,7 @@ def _special(
     of: list[str] | None = None,
 ) -> list[str]:
     """A line for each special point, of one of these types; of each curve the type that it is a curve `of`."""
-    words = [_short(word) for word in _words(arrays)]
+    words = [_short(word) for word in itineraries(arrays)]
     rows = [
         ("point", single, *([] if of is None else ["of"]), *parameters.values(), "type", "period", "impacts", "error")
     ]
@@ -157,7 +157,7 @@ def _number(arrays: Mapping, special: int) -> str:
     return f"{value:.{min(15, max(3, int(-np.log10(error))))}f}"
 
 
-def _words(arrays: Mapping) -> list[str]:
+def itineraries(arrays: Mapping) -> list[str]:
     """The itinerary of each branch."""
     sizes, impacts = (np.asarray(arrays[name]).astype(int) for name in ("branch_row_size", "branch_impacts"))
     first, sides = np.append(0, np.cumsum(sizes * impacts)), np.asarray(arrays["impact_side"])

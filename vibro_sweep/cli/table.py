@@ -11,6 +11,7 @@ import xarray
 
 from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.checks.refusals import cut
+from vibro_sweep.cli.ragged_tables import itineraries
 from vibro_sweep.files.file_errors import StoreError
 from vibro_sweep.files.opening import open_file
 from vibro_sweep.files.reading import open_whole, sweep_in
@@ -93,6 +94,12 @@ def _of_ragged(data: xarray.Dataset, dimension: str, names: Sequence[str]) -> It
         several = values.shape[1] > 1
         head += [_head(f"{name}_{i + 1}" if several else name, unit) for i in range(values.shape[1])]
         columns += list(values.T)
+        if name in ("window_lower", "window_upper"):  # the special points at the ends
+            head.append(f"{name}_type")
+            columns.append(_in_words(data["special_type"].values, data["special_type"].attrs)[variable.values])
+        elif name == "window_branch":
+            head.append("impacts")
+            columns.append(np.array(itineraries(data), object)[variable.values])
     yield head
     yield from zip(*columns, strict=True)
 

@@ -12,7 +12,7 @@ import numpy as np
 from vibro_sweep.analysis.branches.branch_arrays import SHAPES, Arrays
 from vibro_sweep.analysis.single.orbit import simulate
 from vibro_sweep.analysis.windows.job import window_of
-from vibro_sweep.analysis.windows.rows import Row, check_data, chosen_key, rows_of
+from vibro_sweep.analysis.windows.rows import REASON_CODES, Row, check_data, chosen_key, rows_of
 from vibro_sweep.analysis.windows.unvisited import unvisited_in
 from vibro_sweep.analysis.windows.window import Windows, in_file_order, windows_of
 from vibro_sweep.analysis.windows.window_search import WindowSearch
@@ -159,6 +159,8 @@ def rows_in(data: Sweep, parameter: str | None) -> list[Row]:
     system = parse_scene(data.attrs["scene"]).system
     system = system.replace(**{name: value for name, value in data.held.items() if name in system.described})
     rows = list(rows_of(data, system, chosen_key(data, system, parameter)))
+    if all((row.reason == REASON_CODES["not_computed"]).all() for row in rows):
+        raise ArgumentError("status: no orbit is computed yet; windows start from the section states of a sweep")
     for row in rows if data.in_memory else ():
         _check_orbit(row)
     return rows

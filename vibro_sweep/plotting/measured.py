@@ -23,8 +23,11 @@ _HEADED = re.compile(r"([\w*]+)\s*(?:\[(.*)\]|\((.*)\))?")  # frequency [Hz]
 class Measured:
     """Columns by name, of one length; each with its unit where its head says one."""
 
-    def __init__(self, name: str, columns: Mapping[str, np.ndarray], units: Mapping[str, str]):
+    def __init__(
+        self, name: str, columns: Mapping[str, np.ndarray], units: Mapping[str, str], wrong: Mapping[str, str]
+    ):
         self.name, self.columns, self.units = name, columns, units
+        self._wrong = wrong  # of columns that are no numbers, as remarks: the first that is none
 
     def __contains__(self, name: str) -> bool:
         return name in self.columns or (name in _OTHER and _OTHER[name] in self.columns)
@@ -32,6 +35,8 @@ class Measured:
     def values(self, name: str, unit: str | None) -> np.ndarray:
         """A column in the unit of the picture; omega from a frequency, and the other way round. Raises PlotError."""
         key = name if name in self.columns else _OTHER[name]
+        if key in self._wrong:
+            raise PlotError(f"points: {self.name}{self._wrong[key]} is not a number")
         values, written = self.columns[key], self.units.get(key)
         if key != name:  # numbers without a unit of their own are in cycles, or in radians, per unit of time
             values = values * (2 * np.pi if name == FREQUENCY.name else 1 / (2 * np.pi))
@@ -76,25 +81,32 @@ def _of_file(path: Path) -> Measured:
     text = raw.decode("utf-8-sig", errors="replace")
     sample = next((line for line in text.splitlines() if line.strip()), "")
     delimiter = max(",;\t", key=sample.count)
-    rows = [row for row in csv.reader(text.splitlines(), delimiter=delimiter) if any(map(str.strip, row))]
+    reader, rows, lines = csv.reader(text.splitlines(), delimiter=delimiter), [], []
+    try:
+        for row in reader:
+            if any(map(str.strip, row)) and not (rows and row[0].lstrip().startswith("#")):
+                rows.append(row)
+                lines.append(reader.line_num)
+    except csv.Error as error:
+        raise PlotError(f"points: {path}: {error}") from None
     if len(rows) < 2:
         raise PlotError(f"points: {path} must have a line of names and a line for each point")
     names, units = zip(*map(_name_and_unit, rows[0]), strict=True)
     if twice := [name for name in names if name and names.count(name) > 1]:
         raise PlotError(f"points: {path} has two columns {cut(twice[0])}")
-    numbers = np.full((len(rows) - 1, len(names)), np.nan)
+    numbers, wrong = np.full((len(rows) - 1, len(names)), np.nan), {}
     for i, row in enumerate(rows[1:]):
         if len(row) > len(names) and any(map(str.strip, row[len(names) :])):
             text = f"{len(row)} entries below {len(names)} names; numbers with decimal commas need ; between them"
-            raise PlotError(f"points: {path}, line {i + 2}: {text}")
+            raise PlotError(f"points: {path}, line {lines[i + 1]}: {text}")
         for j, word in enumerate(row[: len(names)]):
             try:
                 numbers[i, j] = float(word.replace(",", ".") if delimiter != "," else word)
             except ValueError:
                 if word.strip():
-                    raise PlotError(f"points: {path}, line {i + 2}: {cut(word)} is not a number") from None
+                    wrong.setdefault(names[j], f", line {lines[i + 1]}: {cut(word)}")
     known = {name: unit for name, unit in zip(names, units, strict=True) if unit}
-    return _checked(str(path), dict(zip(names, numbers.T, strict=True)), known)
+    return _checked(str(path), dict(zip(names, numbers.T, strict=True)), known, wrong)
 
 
 def _name_and_unit(head: str) -> tuple[str, str]:
@@ -102,12 +114,14 @@ def _name_and_unit(head: str) -> tuple[str, str]:
     return (match[1], match[2] or match[3] or "") if match else (head.strip(), "")
 
 
-def _checked(name: str, columns: dict[str, np.ndarray], units: dict[str, str]) -> Measured:
+def _checked(
+    name: str, columns: dict[str, np.ndarray], units: dict[str, str], wrong: Mapping[str, str] | None = None
+) -> Measured:
     if len(columns) < 2 or len({len(values) for values in columns.values()}) > 1:
         raise PlotError(f"points: {name} must have two columns at least, of one length, with names as frequency and x1")
     if _OTHER.keys() <= columns.keys():
         raise PlotError(f"points: {name} must have one of the columns {' and '.join(_OTHER)}")
-    return Measured(name, columns, units)
+    return Measured(name, columns, units, wrong or {})
 
 
 def draw_measured(ax: Any, points: Measured | None, x: tuple[str, str | None], y: tuple[str, str | None]) -> bool:
