@@ -92,8 +92,10 @@ def study_of_settle(seed: int) -> Report:
     if went_on:
         half, _ = recorded(system, max((took + record) // 2 - record - 1, transient), record)
         too_long = half.status.item() == 0 and half.period.item() > 0
+    steps = np.diff(data.x1.values.ravel())
+    away = bool((steps > 0).all() or (steps < 0).all())  # of what no spring holds: it comes to no orbit
     return new_report(
         machines=1, arrived=int(arrived), went_on=int(went_on), took_more_than_twice=int(too_long),
-        not_arrived=int(data.status.item() == 6),
+        not_arrived=int(data.status.item() == 6 and not away), goes_away=int(data.status.item() == 6 and away),
         without_a_period=int(data.status.item() == 0 and data.period.item() == 0),
     )  # fmt: skip

@@ -63,12 +63,13 @@ def _frequencies(low: float, high: float, system: Oscillator) -> str:
 def _modes(system: Oscillator) -> str:
     """Natural frequencies and damping ratios, of the modes of the motion without damping."""
     q = system.linear
-    size = 1 / np.sqrt(np.diag(q.M))
-    root = np.linalg.cholesky(q.M * np.outer(size, size))
-    inverse = np.linalg.inv(root) * size
-    squares, shapes = np.linalg.eigh(inverse @ q.K @ inverse.T)
-    omega = np.sqrt(np.maximum(squares, 0))
-    damping = np.einsum("ij,ik,kj->j", shapes, inverse @ q.C @ inverse.T, shapes)
+    with np.errstate(all="ignore"):  # of numbers at the ends of the floats
+        size = 1 / np.sqrt(np.diag(q.M))
+        root = np.linalg.cholesky(q.M * np.outer(size, size))
+        inverse = np.linalg.inv(root) * size
+        squares, shapes = np.linalg.eigh(inverse @ q.K @ inverse.T)
+        omega = np.sqrt(np.maximum(squares, 0))
+        damping = np.einsum("ij,ik,kj->j", shapes, inverse @ q.C @ inverse.T, shapes)
     free = omega <= FREE * omega.max()
     sprung = np.flatnonzero(~free)
     named = ", ".join(_frequencies(omega[i], omega[i], system) for i in sprung[:FEW])
@@ -158,6 +159,8 @@ def _settling(q: Linear, transient: int) -> str:
     flat = [Linear(*fields) for fields in _each(q)]
     rates = [roots(one) for one in flat]
     slowest = min(float(-rate.real.max() * 2 * math.pi / one.omega) for rate, one in zip(rates, flat, strict=True))
+    if np.isnan(rates).any():
+        return "the modes are beyond the range of the floats"
     if slowest <= FREE:
         return f"without contact nothing settles: a mode has no damping; transient {transient:,}"
     needed = math.log(1 / ARRIVED) / slowest

@@ -32,14 +32,14 @@ def units_from(value: Any) -> Units | None:
     return Units(*sizes.tolist())
 
 
-_OF_PI = re.compile(r"([-+]?)(\d*\.?\d*)\s*\*?\s*pi\s*(?:/\s*(\d+\.?\d*))?")
+OF_PI = r"([-+]?)(\d+\.?\d*|\.\d+)?\s*\*?\s*pi\s*(?:/\s*(\d+\.?\d*))?"
 
 
 def phase_in_words(text: str) -> str | float:
     """A phase that is given as "cos", or in parts of pi, as "pi/2" and "0.3 pi"; any other text as it is."""
     if text == "cos":  # of omega t, in place of a sine
         return math.pi / 2
-    parts = _OF_PI.fullmatch(text.strip())
+    parts = re.fullmatch(OF_PI, text.strip())
     if parts is None or (parts[3] is not None and float(parts[3]) == 0):
         return text
     return float(f"{parts[1]}1") * float(parts[2] or 1) * math.pi / float(parts[3] or 1)

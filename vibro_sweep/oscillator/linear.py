@@ -338,7 +338,9 @@ def forcing_period(q: Linear) -> float:
 
 
 def roots(q: Linear) -> np.ndarray:
-    """The 2N roots lambda of det(lambda^2 M + lambda C + K) = 0."""
+    """The 2N roots lambda of det(lambda^2 M + lambda C + K) = 0; NaN beyond the range of the floats."""
     n = len(q.normal)
     inverse = np.linalg.inv(q.M)
-    return np.linalg.eigvals(np.block([[np.zeros((n, n)), np.eye(n)], [-inverse @ q.K, -inverse @ q.C]]))
+    with np.errstate(all="ignore"):
+        matrix = np.block([[np.zeros((n, n)), np.eye(n)], [-inverse @ q.K, -inverse @ q.C]])
+    return np.linalg.eigvals(matrix) if np.isfinite(matrix).all() else np.full(2 * n, np.nan)

@@ -76,7 +76,8 @@ def _lines(result, subject, height, rows) -> Panels:
             handles, labels = ax.get_legend_handles_labels()
             named = dict(zip(labels, handles, strict=True))  # each start has lines of its own
             if len(named) > 1 and (len(styles) > 1 or ax is axes[0, 0]):
-                ax.legend(named.values(), named.keys(), ncols=min(8, len(named)), **ABOVE)
+                columns = 2 if getattr(ax.figure, "narrow", False) else 8
+                ax.legend(named.values(), named.keys(), ncols=min(columns, len(named)), **ABOVE)
         axes[-1, 0].set_xlabel(result.axis(key))
         set_reach(axes[-1, 0], values[order])
 

@@ -9,9 +9,6 @@ import xarray
 from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.oscillator.catalogue import NUMBERS
-from vibro_sweep.scene import SceneError, parse_continuation, parse_scene
-from vibro_sweep.scene.continuation import is_continuation
-from vibro_sweep.scene.yaml_text import YAMLTextError, read_yaml
 from vibro_sweep.tables.file_columns import OF_FIRST, OF_PARAMETER, RAGGED_KINDS, UNVISITED, columns
 from vibro_sweep.tables.observables import variables
 from vibro_sweep.tables.parameters import CYCLES, FREQUENCY
@@ -22,6 +19,10 @@ from vibro_sweep.tables.units import AS_STORED, NONE, Display, Units, display_of
 def declared_units(scene: str) -> tuple[dict[str, str], Units | None]:
     """The units of the numbers and variables of a scene's file, by name, and those of its system; of a sweep of a
     function's oscillators none are known."""
+    from vibro_sweep.scene import SceneError, parse_continuation, parse_scene  # and pydantic, which few pictures need
+    from vibro_sweep.scene.continuation import is_continuation
+    from vibro_sweep.scene.yaml_text import YAMLTextError, read_yaml
+
     try:
         of = parse_continuation if is_continuation(read_yaml(scene)) else parse_scene
         system = of(scene).system

@@ -4,7 +4,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, Field, Tag, WithJsonSchema
 
-from vibro_sweep.oscillator.checked_numbers import phase_in_words
+from vibro_sweep.oscillator.checked_numbers import OF_PI, phase_in_words
 from vibro_sweep.oscillator.models.declaration import STOPS
 from vibro_sweep.tables.parameters import PHASE
 from vibro_sweep.tables.quantity import Parameter
@@ -23,7 +23,7 @@ Tau = Annotated[
     Annotated[float, Tag("tau as a number")] | Annotated[Literal["grazing"], Tag("tau as a word")],
     Discriminator(lambda value: "tau as a word" if isinstance(value, str) else "tau as a number"),
     BeforeValidator(lambda value: phase_in_words(value) if isinstance(value, str) else value),
-    WithJsonSchema({"anyOf": [{"type": "number"}, {"type": "string"}]}),
+    WithJsonSchema({"anyOf": [{"type": "number"}, {"type": "string", "pattern": f"^(grazing|cos|{OF_PI})$"}]}),
 ]
 TAU = (Tau, Field(default=PHASE.default, description=PHASE.described))
 WHICH = (Literal[STOPS], Field(default="both", description="which stops there are"))
