@@ -175,9 +175,7 @@ def test_ctrl_c_at_any_moment_of_the_beginning(folder, compiled):
         *before, last = error
         assert last.startswith("vibro-sweep: interrupted"), (k, error)
         # a quick machine has said by then that it compiles, and how long that took
-        expected = (
-            r"vibro-sweep: (compiling kernels, once: .*|compiled \w+ in \d+ s|  .*: about \d+ s of processor time)"
-        )
+        expected = r"vibro-sweep: (compiling .*|compiled \w+ in \d+ s)"
         assert len(set(before)) == len(before) and all(re.fullmatch(expected, line) for line in before), (k, error)
         assert not Path(f"{output}.lock").exists()
 

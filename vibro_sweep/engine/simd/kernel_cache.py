@@ -89,7 +89,7 @@ def _announce(kernel: str, where: str) -> None:
     _once(logging.INFO, "compiling", "compiling kernels%s", where)
     if kernel in PURPOSES:
         purpose, seconds = PURPOSES[kernel]
-        _log.info("  %s: about %d s of processor time", purpose, seconds)
+        _log.info("compiling for %s: about %d s of processor time", purpose, seconds)
     if slower:
         _once(logging.INFO, "slower", slower)
 
