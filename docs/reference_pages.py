@@ -22,7 +22,7 @@ from vibro_sweep.plotting import KINDS
 from vibro_sweep.scene import json_schema
 from vibro_sweep.tables.bifurcations import CODIMENSION_TWO, CURVES, TYPES, WAYS, Bifurcation
 from vibro_sweep.tables.coordinates import INITIAL
-from vibro_sweep.tables.file_columns import BRANCHES, CHART, OF_EDGES, WINDOWS, columns
+from vibro_sweep.tables.file_columns import BRANCHES, CHART, OF_CONTACTS, OF_EDGES, WINDOWS, columns
 from vibro_sweep.tables.observables import DIMENSIONS, SETTLE, TRAJECTORY, VARIABLES, WORDS
 from vibro_sweep.tables.outcomes import BRANCHES as OF_BRANCHES
 from vibro_sweep.tables.outcomes import EDGES, NOT_COMPUTED, ORBITS, POINTS, REASONS, STATUSES, Outcome
@@ -258,8 +258,9 @@ def variables() -> Iterator[str]:
     yield "## Dimensions\n"
     yield from table(("name", "meaning"), ((f"`{name}`", one.text) for name, one in DIMENSIONS.items()))
     known: set[str] = set()
-    edges = ((CHART, ["b", "omega"], "curves", OF_EDGES),)
-    for kind, parameters, name, more in ((BRANCHES, ["b"], "branches", ()), (WINDOWS, ["b"], "windows", ()), *edges):
+    branches = (BRANCHES, ["b"], "branches", OF_CONTACTS)
+    edges = (CHART, ["b", "omega"], "curves", OF_EDGES)
+    for kind, parameters, name, more in (branches, (WINDOWS, ["b"], "windows", ()), edges):
         yield f"## A file of {name}\n"
         yield "Beside those of a file of branches.\n" if known else f"{OBJECTS}\n"
         found = [one for one in (*columns(kind, parameters, 2), *more) if one.name not in known]

@@ -91,3 +91,35 @@ def test_a_graze_with_all_real_orbits_out_of_bounds_is_refused(symmetric_branch)
     graze = symmetric_branch.begins
     with pytest.raises(ValueError, match="no orbit beside it in b is real"):
         vs.continue_orbit(graze.orbit, "b", (0.3, graze.parameters["b"]))
+
+
+@pytest.mark.parametrize("damping", [{}, {"c_stop": 3.0}, {"c_stop": 3.0, "release": "force"}, {"preload": 2.0}])
+def test_the_largest_force_along_a_branch(damping, tmp_path):
+    """Against the motion in a fine grid of times, of which a parabola through three has the maximum."""
+    soft = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, k_stop=100.0, b=4.0, **damping)
+    orbit = vs.periodic_orbit(soft, itinerary="R")
+    branch = vs.continue_orbit(orbit, "b", (3.9, 4.1), observe=["contacts"])
+    for k in (0, len(branch.points.b) // 2, -1):
+        one = branch.orbit(k)
+        touch, release = (one.contacts[name][0] for name in ("t_touch", "t_release"))
+        inside = np.linspace(touch, release, 20001)
+        times = inside if inside[0] > 0 else inside + 2 * np.pi / soft.omega
+        x, v = one.sample(times)[:, :2].T
+        depth = x - one.system.b
+        force = 100.0 * depth + damping.get("c_stop", 0.0) * v + damping.get("preload", 0.0)
+        assert branch.points.penetration_max[k].item() == pytest.approx(depth.max(), rel=1e-7)
+        assert branch.points.contact_force_max[k].item() == pytest.approx(force[1:-1].max(), rel=1e-3)
+        assert branch.points.contact_force_max[k].item() >= force[1:-1].max() * (1 - 1e-12)
+    loaded = vs.load(branch.save(tmp_path / "branch.h5"))
+    assert loaded.points.identical(branch.points)
+    assert loaded.save(tmp_path / "again.h5") and "observe: [contacts]" in vs.open(tmp_path / "again.h5").attrs["scene"]
+
+
+def test_branches_without_contacts_have_no_force():
+    orbit = vs.periodic_orbit(PAPER.replace(b=4.0), itinerary="R")
+    for wrong in (["contacts"], "contacts", ["impacts"], [3], 5, [["contacts"]]):
+        with pytest.raises(ValueError, match="observe: "):
+            vs.continue_orbit(orbit, "b", (3.9, 4.1), observe=wrong)
+    soft = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, k_stop=100.0, b=9.0)
+    free = vs.continue_orbit(vs.periodic_orbit(soft, itinerary=""), "b", (8.9, 9.1), observe=["contacts"])
+    assert np.isnan(free.points.contact_force_max).all() and np.isnan(free.points.penetration_max).all()

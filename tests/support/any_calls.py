@@ -125,6 +125,7 @@ def calls(made: dict[str, Any]) -> dict[str, Call]:
     bounds = each("bounds", (0.39, 0.41), [0.39, 0.41], np.array([0.39, 0.41]), xr.DataArray([0.39, 0.41]))
     progress = each("progress", None, print_nothing)
     parameter = each("parameter", "b", np.str_("b"))
+    observed = each("observe", (), [], np.array([]))
     step = each("step", 1.0, 2, np.float64(0.5))
     how = each("workers", None, 1, 2) | each("mode", "new", "overwrite", "resume")
     how |= each("output", "out.h5", Path("out.h5")) | each("progress", None, print_nothing, False)
@@ -202,11 +203,13 @@ def calls(made: dict[str, Any]) -> dict[str, Call]:
         "load": Call(vs.load, each("path", "orbit.json", Path("orbit.json"))),
         "born_at_grazing": Call(vs.born_at_grazing, system | each("periods", 1, 1.0)),
         "Branch.orbit": Call(made["Branch"].orbit, each("point", 0, -1, np.int64(1))),
-        "continue_orbit": Call(vs.continue_orbit, each("orbit", orbit) | parameter | bounds | progress | step),
+        "continue_orbit": Call(
+            vs.continue_orbit, each("orbit", orbit) | parameter | bounds | progress | step | observed
+        ),
         "follow_branches": Call(
             vs.follow_branches,
             each("orbit", orbit) | parameter | bounds | each("follow", ("graze",), [], ["flip", "pitchfork"])
-            | each("depth", 0, 1.0) | progress,
+            | each("depth", 0, 1.0) | progress | observed,
         ),
         "switch": Call(vs.switch, each("special", special)),
         "sticking_onset": Call(vs.sticking_onset, each("special", special)),

@@ -17,6 +17,7 @@ from vibro_sweep.engine import points
 from vibro_sweep.engine.any_points import grazing_points
 from vibro_sweep.engine.motion.ensemble import Mapping
 from vibro_sweep.engine.records import Kind, new_results, starts_after, starts_at
+from vibro_sweep.engine.simd.kernel_cache import announce_count
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.oscillator.grid import linears
 from vibro_sweep.oscillator.own_time import in_own_time, in_users_time, with_velocities
@@ -72,6 +73,8 @@ def compute(block: Block) -> tuple[tuple[slice, ...], dict[str, np.ndarray]]:
 
 def _compute(block: Block) -> dict[str, np.ndarray]:
     plan, states = block.plan, 2 * block.system.masses
+    needed = {"run_points": True, "run_energy": plan.energy, "run_trajectories": plan.periods > 0}
+    announce_count([kernel for kernel, is_needed in needed.items() if is_needed])
     table, kind, rate = table_of(block.system, block.axes, frames=plan.lyapunov or plan.order > 0)
     if plan.order:
         table["graze"] = (

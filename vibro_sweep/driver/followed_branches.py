@@ -14,7 +14,7 @@ from vibro_sweep.driver.origins import seeds_of
 from vibro_sweep.files.pieces import Pieces
 from vibro_sweep.scene import Continuation
 from vibro_sweep.tables.coordinates import state
-from vibro_sweep.tables.file_columns import BRANCHES
+from vibro_sweep.tables.file_columns import BRANCHES, OF_CONTACTS
 from vibro_sweep.tables.quantity import Quantity
 
 
@@ -24,14 +24,15 @@ def followed_branches(
     """Raises NoOrbitError where the scene's first orbit does not exist. progress(done, total) counts branches."""
     names, masses = list(scene.parameter), scene.system.masses
     evaluate = kept(compute_branch, pool, file, progress)
-    search = Branches(tuple(names), tuple(scene.parameter.values()), scene.follow)
+    search = Branches(tuple(names), tuple(scene.parameter.values()), scene.follow, observe=scene.observe)
     nodes = search.run(seeds_of(scene, file, pool), scene.depth, evaluate)
     arrays = joined([node.arrays for node in nodes], SHAPES, names, masses)
     sections = [node.arrays["section"].reshape(-1, 2 * masses) for node in nodes]
     together = np.concatenate(sections) if sections else np.zeros((0, 2 * masses))
     arrays |= {f"section_{name}": together[:, i] for i, name in enumerate(state(masses))}
     arrays["branch_sections"] = np.array([node.arrays["section"].shape[1] for node in nodes], int)
-    return columns_in_file(BRANCHES, names, scene.system), arrays | where_met(nodes, arrays["branch_special"])
+    columns = columns_in_file(BRANCHES, names, scene.system, OF_CONTACTS if scene.observe else ())
+    return columns, arrays | where_met(nodes, arrays["branch_special"])
 
 
 def where_met(nodes: list[Node], counts: np.ndarray) -> dict[str, np.ndarray]:

@@ -47,6 +47,8 @@ def joined(
     for dimensions, names in shapes.items():
         tail = [lengths[key] for key in dimensions.split() if key in lengths]
         for name in names.split():
+            if not all(name in arrays for arrays in all_arrays):  # not asked for
+                continue
             parts = [np.reshape(arrays[name], (-1, *tail)) for arrays in all_arrays]
             if dimensions == "K":
                 parts = [np.tile(part, n) for part, n in zip(parts, points, strict=True)]
@@ -90,6 +92,8 @@ def part_of(arrays: Mapping[str, np.ndarray], shapes: Mapping[str, str], paramet
     for dimensions, names in shapes.items():
         there = indices[dimensions if dimensions in indices else dimensions[0]]
         for name in names.split():
+            if name not in columns and name not in arrays:  # not asked for
+                continue
             parts = [np.asarray(arrays[key])[there] for key in columns.get(name, [name])]
             result[name] = np.stack(parts, axis=-1) if len(parts) > 1 else parts[0]
             if dimensions == "n K":

@@ -27,7 +27,8 @@ from vibro_sweep.results import ragged_dataset
 from vibro_sweep.scene import Continuation
 from vibro_sweep.tables.bifurcations import CURVES
 from vibro_sweep.tables.coordinates import state
-from vibro_sweep.tables.file_columns import BRANCHES, CHART
+from vibro_sweep.tables.file_columns import BRANCHES, CHART, OF_CONTACTS
+from vibro_sweep.tables.observables import ALONG_BRANCHES
 
 if TYPE_CHECKING:
     import xarray
@@ -65,21 +66,26 @@ def _dataset(result: Saved) -> "xarray.Dataset":
         if result.type not in CURVES:
             raise ArgumentError("a curve of onsets of sticking has no file: its orbits have no finite list of impacts")
         arrays, kind, shapes, more = curve_arrays.arrays_of(result), CHART, curve_arrays.SHAPES, {}
+        contacts = False
     else:
         arrays = branch_arrays.arrays_of(result, result._start.family.free[result.parameter])
         kind, shapes = BRANCHES, branch_arrays.SHAPES
         sections = branch_arrays.sections_of(arrays, result.parameter, system)
         more = {f"section_{coordinate}": sections[..., i].ravel() for i, coordinate in enumerate(state(system.masses))}
         more["branch_sections"] = np.array([sections.shape[1]])
-    scene = _scene_of(arrays, names, system)
+        contacts = OF_CONTACTS[0].name in arrays
+    scene = _scene_of(arrays, names, system, ALONG_BRANCHES if contacts else ())
     attributes = attributes_of(scene, Source(scene.system, "")) | {ONE: type(result).__name__}
     title = f"{type(result).__name__} in {', '.join(names)}"
     header = ragged_dataset.attributes_of(kind, title, scene.to_yaml(), attributes)
     columns_of_result = joined([arrays], shapes, names, system.masses) | none | more
-    return ragged_dataset.dataset(header, columns_in_file(kind, names, system), columns_of_result)
+    more_columns = OF_CONTACTS if contacts else ()
+    return ragged_dataset.dataset(header, columns_in_file(kind, names, system, more_columns), columns_of_result)
 
 
-def _scene_of(arrays: dict[str, np.ndarray], names: Sequence[str], system: Oscillator) -> Continuation:
+def _scene_of(
+    arrays: dict[str, np.ndarray], names: Sequence[str], system: Oscillator, observe: tuple[str, ...]
+) -> Continuation:
     """The scene that follows the same orbits from the state of one of them."""
     value = np.reshape(arrays["value"], (-1, len(names)))
     at = int(arrays.get("branch_origin", len(value) // 2))
@@ -87,7 +93,7 @@ def _scene_of(arrays: dict[str, np.ndarray], names: Sequence[str], system: Oscil
     bounds = {name: _range(there, name, entries) for name, entries in zip(names, value.T, strict=True)}
     begin = tuple(arrays["state"][at].tolist())
     period = int(arrays["branch_period"])
-    return Continuation("result", there, "state", begin, period, None, None, bounds, CURVES, (), 0)
+    return Continuation("result", there, "state", begin, period, None, None, bounds, CURVES, (), 0, observe)
 
 
 def _range(system: Oscillator, name: str, values: np.ndarray) -> tuple[float, float]:

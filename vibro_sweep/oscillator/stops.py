@@ -21,6 +21,9 @@ NEEDS_IMPACTS = {  # what rigid stops have alone, and why
 }
 
 
+NOT_PRESSED = "both stops are rigid, which are struck and not pressed"
+
+
 def why_rigid(what: str) -> str:
     """Why `what`, a key of `NEEDS_IMPACTS`, needs rigid stops, and what there is with others."""
     return f"{NEEDS_IMPACTS[what]}; {RIGID_ALONE}"

@@ -29,15 +29,16 @@ from vibro_sweep.plotting.style import (
 from vibro_sweep.plotting.style import BRANCHES as BRANCH_COLOURS
 from vibro_sweep.tables.bifurcations import ON_CIRCLE
 from vibro_sweep.tables.coordinates import MOST_MASSES, state
-from vibro_sweep.tables.file_columns import BRANCHES
+from vibro_sweep.tables.file_columns import BRANCHES, OF_CONTACTS
 
 LINES = (LEFT, "#c26a00", "#446644", "#7b3294", "#77541f", "#1a1a2e")  # of branches, in turn
+COLUMN = {"impact_speed": "min_impact_speed"}  # of the file, where a variable has another name
 MOST = 3.0  # modulus of a multiplier that is shown: at a graze it is infinite
 
 
 def variables(file: RaggedFile) -> tuple[str, ...]:
     """The variables that may be drawn over the parameter."""
-    return (*_sections(file), "impact_speed", "multiplier", "stop_distance")
+    return (*_sections(file), "impact_speed", "multiplier", "stop_distance", *_of_contacts(file))
 
 
 def branches(path, options: PlotOptions) -> Panels:
@@ -72,14 +73,13 @@ def _draw(ax, file: RaggedFile, name: str, options: PlotOptions) -> None:
         finite = values[_inside(file[file.parameters[0]], options.xlim)]
         finite = finite[np.isfinite(finite)]
         ax.set_ylim(options.ylim or (limits(finite) if finite.size else None))
-        ax.set_ylabel(_label(name) + file.unit("min_impact_speed" if name == "impact_speed" else name))
+        ax.set_ylabel(_label(name) + file.unit(COLUMN.get(name, name)))
     if name == "multiplier":
         ax.axhline(1, color=INK, lw=0.5)
         ax.set_ylim(0, min(1.05 * np.nanmax(values), MOST))
     visible = [(kind, place) for kind, place in marks if all(map(_inside, place, (ax.get_xlim(), ax.get_ylim())))]
-    draw_measured(
-        ax, options.points, (file.parameters[0], file.stored_unit(file.parameters[0])), (name, file.stored_unit(name))
-    )
+    x = file.parameters[0]
+    draw_measured(ax, options.points, (x, file.stored_unit(x)), (name, file.stored_unit(COLUMN.get(name, name))))
     _legend(ax, {kind for kind, _ in visible}, below)
     arrange(ax.figure)
     visible.sort(key=lambda mark: mark[0] != "sticking")  # where many accumulate, what they lead to is named
@@ -98,7 +98,7 @@ def values_of(file: RaggedFile, name: str) -> np.ndarray:
     if name == "multiplier":
         return multiplier_lines.multipliers(file)
     if name in ("impact_speed", "stop_distance"):
-        found = file["min_impact_speed" if name == "impact_speed" else name].astype(float)
+        found = file[COLUMN.get(name, name)].astype(float)
         return np.where(np.isfinite(found), found, np.nan)
     return file[name]
 
@@ -108,12 +108,17 @@ def _label(name: str) -> str:
         "impact_speed": "smallest impact speed",
         "multiplier": "modulus $|\\mu|$ of the multipliers",
         "stop_distance": "distance of the nearest turning point from its stop",
+        **{column.name: column.label for column in OF_CONTACTS},
     }
     return labels.get(name) or f"{symbol(name)} at $t = 0$"
 
 
 def _sections(file: RaggedFile) -> list[str]:
     return [name for name in state(MOST_MASSES) if name in file.arrays]
+
+
+def _of_contacts(file: RaggedFile) -> list[str]:
+    return [column.name for column in OF_CONTACTS if column.name in file.arrays]
 
 
 def _lines(ax, file: RaggedFile, values: list[np.ndarray], together: np.ndarray) -> None:

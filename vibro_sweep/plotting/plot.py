@@ -118,6 +118,8 @@ def plot(
         for name, value in refused.items():
             if value is not None:
                 raise PlotError(f"{name}: of an orbit `width` and `kind` are the only options; the Figure has more")
+        if getattr(data, "_solution", data) is None:
+            raise PlotError(not_allowed("data", data, "an orbit that has a motion: this one was not found"))
         return data.plot(width=width, kind=kind)
     check_type("kind", kind, (str, NoneType), "the name of a kind of picture, or None")
     if ax is not None and not isinstance(ax, Axes):

@@ -8,7 +8,7 @@ import xarray
 
 from vibro_sweep.checks.refusals import cut, shown
 from vibro_sweep.results.described import described
-from vibro_sweep.tables.file_columns import OF_EDGES, RAGGED, RAGGED_KINDS, columns
+from vibro_sweep.tables.file_columns import OF_CONTACTS, OF_EDGES, RAGGED, RAGGED_KINDS, columns
 from vibro_sweep.tables.quantity import Quantity
 
 
@@ -33,10 +33,11 @@ def check(data: xarray.Dataset) -> None:
         raise ValueError(f"its kind {shown(kind)} is unknown")
     names = [str(name) for name in np.atleast_1d(data.attrs.get("parameters", []))]
     lengths = {str(name): size for name, size in data.sizes.items()}
-    for column in (*columns(kind, names, lengths.get("multiplier", 0) // 2), *OF_EDGES):
+    optional = (*OF_EDGES, *OF_CONTACTS)  # of curves of a plane, and of branches where contacts are observed
+    for column in (*columns(kind, names, lengths.get("multiplier", 0) // 2), *optional):
         if column.name in data:
             _check_column(column, data[column.name].variable, lengths)
-        elif column not in OF_EDGES:  # which only curves of a plane have
+        elif column not in optional:
             raise ValueError(f"`{cut(column.name)}` is missing")
     for dimension, counts in RAGGED.items():
         if dimension in lengths and all(name in data for name in counts):

@@ -6,7 +6,7 @@ import numpy as np
 
 from vibro_sweep.oscillator.contact_laws.compliant import LAW as COMPLIANT
 from vibro_sweep.oscillator.oscillator import Oscillator
-from vibro_sweep.oscillator.stops import DAMPER_ALONE, why_rigid
+from vibro_sweep.oscillator.stops import DAMPER_ALONE, NOT_PRESSED, why_rigid
 from vibro_sweep.tables.exponents import LEAST_RECORD
 from vibro_sweep.tables.observables import WORDS
 from vibro_sweep.tables.parameters import CYCLES, STOP_LEFT, STOP_RIGHT
@@ -87,7 +87,7 @@ def _contact_problems(form: Form, system: Oscillator) -> list[str]:
     """What compliant stops have no part in, and rigid ones."""
     q = system.linear
     if not q.compliant:
-        text = "both stops are rigid, which are struck and not pressed; observe impacts"
+        text = f"{NOT_PRESSED}; observe impacts"
         return [problem("observe", sorted(form.observe), text)] if "contacts" in form.observe else []
     problems = []
     if form.dynamics == "map":

@@ -10,6 +10,7 @@ from pydantic import ValidationError
 from vibro_sweep.checks.refusals import ParameterError, not_allowed
 from vibro_sweep.oscillator.oscillator import Oscillator
 from vibro_sweep.oscillator.other_words import own_name
+from vibro_sweep.oscillator.stops import NOT_PRESSED
 from vibro_sweep.tables.coordinates import state
 from vibro_sweep.tables.parameters import CYCLES, FREQUENCY
 
@@ -40,6 +41,7 @@ class Continuation(AnyScene):
     parameter : name -> (lo, hi) of the number that changes, or of two in the order of the text
     of : types of the curves in two numbers
     follow, depth : special points from which other branches are followed, and how far
+    observe : what else is computed of each orbit of branches
     picture_units : names of units in which numbers are shown, whatever the system's are
 
     Examples
@@ -63,6 +65,7 @@ class Continuation(AnyScene):
     of: tuple[str, ...]
     follow: tuple[str, ...]
     depth: int
+    observe: tuple[str, ...] = ()
     picture_units: tuple[str, ...] = ()
 
     def data(self) -> dict[str, Any]:
@@ -101,7 +104,8 @@ class Continuation(AnyScene):
         begin += f", its {self.largest} largest windows" if self.largest is not None else ""
         if len(self.parameter) == 1:
             others = f"over {', '.join(self.follow)}, {self.depth} away at most" if self.depth else "no others"
-            return f"branches in {ranges}\n{system}\n  from      {begin}\n  follow    {others}"
+            observed = f"\n  observe   {', '.join(self.observe)}" if self.observe else ""
+            return f"branches in {ranges}\n{system}\n  from      {begin}\n  follow    {others}{observed}"
         lines = [f"curves in {ranges}", system, f"  from      {begin}"]
         lines.append(f"  of        {', '.join(self.of)}")
         if self.origin in BY_BRANCHES:
@@ -137,6 +141,8 @@ def _data_of(attributes: Mapping[str, Any]) -> dict[str, Any]:
         body["of"] = _listed(attributes["of"])
     body |= {"follow": _listed(attributes["follow"]), "depth": attributes["depth"]}
     data = {"system": system_data(system, ()) if isinstance(system, Oscillator) else system, "continue": body}
+    if attributes["observe"] not in ((), []):
+        body["observe"] = _listed(attributes["observe"])
     units = _listed(attributes["picture_units"])
     return data if units in ([], None) else data | {"picture": {"units": units}}
 
@@ -161,11 +167,15 @@ def _continuation_of(data: Any, name: str) -> Continuation:
     problems += wrong_words + more
     if len(ranges) == 1 and "of" in body.model_fields_set:
         problems.append("continue.of: belongs to two keys of `parameter`; leave it out")
+    if len(ranges) == 2 and body.observe:
+        problems.append("continue.observe: belongs to one key of `parameter`; leave it out")
     first = next(iter(ranges), "")
     missing = first and chosen[0] in _IN_FILES and getattr(form.system, own_name(first), None) is None
     at_end = {first: ranges[first]} if missing else {}
     system, more = system_of(form, at_end, kind, masses) if not wrong_words else (None, [])
     problems += more
+    if system is not None and body.observe and not system.linear.compliant:
+        problems.append(problem("continue.observe", list(body.observe), f"{NOT_PRESSED}; leave it out"))
     for key, limits in ranges.items() if system is not None else ():
         numbers = system.family.free
         if key not in numbers:
@@ -187,7 +197,7 @@ def _continuation_of(data: Any, name: str) -> Continuation:
     origin = getattr(body, "from")
     return Continuation(
         Path(name).stem, system, chosen[0], begin, origin.periods, origin.special, origin.largest,
-        ranges, body.of, body.follow, body.depth, tuple(units or ()),
+        ranges, body.of, body.follow, body.depth, body.observe, tuple(units or ()),
     )  # fmt: skip
 
 

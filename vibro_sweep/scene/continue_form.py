@@ -7,6 +7,7 @@ from pydantic import BeforeValidator, FailFast, Field, Strict, create_model
 
 from vibro_sweep.tables.bifurcations import CURVES, WAYS
 from vibro_sweep.tables.coordinates import coordinates
+from vibro_sweep.tables.observables import ALONG_BRANCHES
 from vibro_sweep.tables.quantity import Parameter
 
 from .fields import Form, Whole
@@ -21,6 +22,7 @@ def _free(value):
 
 
 Words = Annotated[tuple[Literal[WAYS], ...], Strict(False)]
+Observed = Annotated[tuple[Literal[ALONG_BRANCHES], ...], Strict(False)]
 CurveWords = Annotated[tuple[Literal[CURVES], ...], Strict(False)]
 
 
@@ -62,5 +64,12 @@ def continue_form(numbers: Iterable[Parameter], masses: int) -> type[Form]:
             "of": (CurveWords, Field(default=CURVES, description="of two numbers: the bifurcations that are followed")),
             "follow": (Words, Field(default=WAYS, description="special points from which other branches are followed")),
             "depth": (Whole, Field(default=1, ge=0, le=100, description="how many special points away from the first")),
+            "observe": (
+                Observed,
+                Field(
+                    default=(),
+                    description="of branches with compliant stops: largest force and penetration of their contacts",
+                ),
+            ),
         },
     )

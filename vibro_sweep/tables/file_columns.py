@@ -82,6 +82,13 @@ OF_BRANCHES = (
     _column("special", "f8", "special_error", "error", "own estimate of the error of `special_value`", OF_PARAMETER),
 )  # fmt: skip
 
+OF_CONTACTS = (  # of branches where `observe` has contacts
+    _column("point", "f8", "contact_force_max", "largest contact force",
+            "largest force of a compliant stop in a period, where `observe` has contacts; NaN without any", "N"),
+    _column("point", "f8", "penetration_max", "largest penetration",
+            "how far the mass is behind a compliant stop at most, where `observe` has contacts; NaN without any", "m"),
+)  # fmt: skip
+
 BRANCH_SECTIONS = _column("branch", "i4", "branch_sections", "section states",
     "number of section states of each point: those of the orbit, then those of its mirror image",
 )  # fmt: skip

@@ -23,6 +23,7 @@ WORDS = {  # of `observe`
     "energy": "power that stops take, root mean square and largest size of every coordinate",
     "convergence": "Lyapunov exponents as they converge along the record",
 }
+ALONG_BRANCHES = ("contacts",)  # words of `observe` that branches have
 WITH_TANGENTS = frozenset({"lyapunov", "multipliers", "attractors", "convergence"})  # tangent vectors are carried
 WITH_STATES = WITH_TANGENTS | {"section"}  # the section points of the record are kept
 SETTLE = "settle"  # the scene's key that asks how long transients were

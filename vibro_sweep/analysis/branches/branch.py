@@ -5,6 +5,7 @@ born (flip, pitchfork), or at the end of the range. Of several events within a s
 the end of a branch is not a motion any more.
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -13,7 +14,7 @@ import numpy as np
 
 from vibro_sweep.analysis.branches import branch_text
 from vibro_sweep.analysis.branches.branch_orbits import Arrays, orbit_at, outline
-from vibro_sweep.analysis.branches.branch_points import dataset, dataset_from_file
+from vibro_sweep.analysis.branches.branch_points import columns, columns_from_file, of_contacts
 from vibro_sweep.analysis.branches.branch_start import NoStartError, changes_rests, start_of_run
 from vibro_sweep.analysis.branches.compiled_stepper import row_of
 from vibro_sweep.analysis.branches.free_run import run_from
@@ -37,7 +38,9 @@ from vibro_sweep.checks.arguments import (
 )
 from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.checks.refusals import not_allowed
-from vibro_sweep.oscillator.linear import family_of
+from vibro_sweep.oscillator.linear import Linear, family_of
+from vibro_sweep.oscillator.stops import NOT_PRESSED
+from vibro_sweep.tables.observables import ALONG_BRANCHES
 
 if TYPE_CHECKING:
     import xarray
@@ -73,6 +76,7 @@ class Branch(FileResult):
     _frame: tuple[int, int]
     _rows: Rows | None  # None of one that was read from a file, which has
     _arrays: dict[str, np.ndarray] | None = None
+    _contacts: bool = False  # whether `points` has what is observed of them
 
     def __repr__(self) -> str:
         return branch_text.of_branch(self)
@@ -89,10 +93,19 @@ class Branch(FileResult):
 
     @cached_property
     def points(self) -> "xarray.Dataset":
-        """Dataset over `point`, with the parameter as a coordinate: state at t = 0, multipliers, distance, impacts."""
-        if self._rows is None:
-            return dataset_from_file(self._arrays, self.parameter).set_coords(self.parameter)
-        return dataset(self._start, self.parameter, self._frame, self._rows).set_coords(self.parameter)
+        """Dataset over `point`, with the parameter as a coordinate: state at t = 0, multipliers, distance, impacts, and
+        where `observe` has contacts, their largest force and penetration."""
+        import xarray
+
+        return xarray.Dataset(self._columns).set_coords(self.parameter)
+
+    @cached_property
+    def _columns(self) -> dict[str, tuple]:
+        """Dimensions and values of each column of `points`."""
+        if self._arrays is not None:
+            return columns_from_file(self._arrays, self.parameter)
+        result = columns(self._start, self.parameter, self._frame, self._rows)
+        return result | of_contacts(map(self.orbit, range(len(self._rows.p)))) if self._contacts else result
 
     def orbit(self, point: int) -> PeriodicOrbit:
         """The orbit at a point, as `points` counts them from 0; -1 is the last.
@@ -128,18 +141,25 @@ class Branch(FileResult):
 @names_its_arguments
 @one_thread()
 def continue_orbit(
-    orbit: PeriodicOrbit, parameter: str, bounds: tuple[float, float], progress=None, step: float = 1.0
+    orbit: PeriodicOrbit,
+    parameter: str,
+    bounds: tuple[float, float],
+    progress=None,
+    step: float = 1.0,
+    observe: Iterable[str] = (),
 ) -> Branch:
     """Follow a periodic orbit in both directions of `parameter`, a number of its system, within bounds = (lo, hi).
 
     `progress(points, value)` is called now and then with the points of this direction so far, and where they are.
     `step` multiplies the lengths of all steps: shorter ones give more points, and the same special points.
+    `observe`, of compliant stops, may have "contacts": their largest force and penetration at each point.
 
     A branch that comes to where the number is not allowed any more ends there, with the type "boundary". What fails is
     told by `.status`.
 
     Raises ValueError for an orbit that is not ok, a name that is not a number of the system, bounds that do not hold
-    its value, or the restitution of a stop on which the mass rests.
+    its value, the restitution of a stop on which the mass rests,
+    or contacts of rigid stops.
 
     Examples
     --------
@@ -160,32 +180,43 @@ def continue_orbit(
         allowed = "another number: an orbit that rests after one impact does so at R = 0"
         raise ArgumentError(not_allowed("parameter", parameter, allowed))
     lo, hi = checked_interval("bounds", bounds, family.free[parameter])
-    step = checked_step(step)
+    step, contacts = checked_step(step), bool(checked_observe(observe, family.linear))
     lo, hi = (in_range(orbit.system, parameter, bound) for bound in (lo, hi))
     check_width("bounds", solution, parameter, lo, hi)
     try:
         first = start_of_run(solution, parameter, lo, hi, step=step)
     except NoStartError:
-        return not_followed(orbit, parameter)
+        return not_followed(orbit, parameter, contacts)
     start, down = first.curve.orbit, run_from(first.backwards(), orbit.system, progress)
     down.follow()
     if down.closed:
         closed = down.special
-        return Branch(parameter, closed, closed[-1], closed[-1], True, start, down.frame, down.points)
+        end = closed[-1]
+        return Branch(parameter, closed, end, end, True, start, down.frame, down.points, None, contacts)
     up = run_from(first, orbit.system, progress)
     up.follow()
     (begins, before), (ends, after) = (_accumulation(run.special[-1], lo, hi) for run in (down, up))
     special = [*before, begins, *reversed(down.special[:-1]), *up.special[:-1], ends, *after]
     rows = both_directions(down.points, up.points)
-    return Branch(parameter, special, begins, ends, False, start, down.frame, rows)
+    return Branch(parameter, special, begins, ends, False, start, down.frame, rows, None, contacts)
 
 
-def not_followed(orbit: PeriodicOrbit, parameter: str) -> Branch:
+def checked_observe(observe: object, q: Linear) -> tuple[str, ...]:
+    """The words of `observe`. Raises ValueError."""
+    words = tuple(observe) if isinstance(observe, Iterable) and not isinstance(observe, (str, bytes, dict)) else None
+    if words is None or any(not isinstance(word, str) or word not in ALONG_BRANCHES for word in words):
+        raise ArgumentError(not_allowed("observe", observe, f"[] or {list(ALONG_BRANCHES)}"))
+    if words and not q.compliant:
+        raise ArgumentError(not_allowed("observe", observe, f"left out: {NOT_PRESSED}"))
+    return words
+
+
+def not_followed(orbit: PeriodicOrbit, parameter: str, contacts: bool = False) -> Branch:
     """An orbit whose branch cannot be followed, as a branch of one point."""
     s, frame = orbit._solution, orbit._canonical_frame
     value = s.family.free[parameter]
     end = SpecialPoint("failed", {parameter: value}, orbit, s.multipliers)
-    return Branch(parameter, [end], end, end, False, s, frame, row_of(value, s, frame))
+    return Branch(parameter, [end], end, end, False, s, frame, row_of(value, s, frame), None, contacts)
 
 
 def _accumulation(end: SpecialPoint, lo: float, hi: float) -> tuple[SpecialPoint, list[SpecialPoint]]:

@@ -11,7 +11,6 @@ import numpy as np
 
 from vibro_sweep.analysis.branches.branch import Branch
 from vibro_sweep.analysis.branches.branch_orbits import Arrays, orbit_at, outline
-from vibro_sweep.analysis.branches.branch_points import columns
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.continuation.starting_orbit import keeps_symmetry
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit, orbit_of
@@ -19,13 +18,15 @@ from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.oscillator.linear import family_of, forcing_period
 from vibro_sweep.tables.bifurcations import BIRTHS, CODES, CRITICALITIES, KINDS, TYPES
 from vibro_sweep.tables.coordinates import state
+from vibro_sweep.tables.file_columns import OF_CONTACTS
 from vibro_sweep.tables.outcomes import BRANCHES, names
 
 # n points, K impacts, s special points, N masses
 SHAPES = {
     # branch_origin: the point that it was followed from; branch_begins, branch_ends: indices among the special points
     "": "branch_period branch_symmetric branch_closed branch_origin branch_begins branch_ends branch_status",
-    "n": "value stop_distance min_impact_speed residual unstable status",  # value: of the parameter
+    "n": "value stop_distance min_impact_speed residual unstable status "
+    "contact_force_max penetration_max",  # value: of the parameter; of contacts where they are observed
     "n 2N": "state multiplier_re multiplier_im",
     # as `orbit.impacts`; impact_t_off: the end of the rest after an impact, or NaN
     "n K": "impact_t impact_v impact_t_off",
@@ -41,7 +42,7 @@ def arrays_of(branch: Branch, origin: float) -> Arrays:
     if branch._arrays is not None:
         return branch._arrays
     start, parameter = branch._start, branch.parameter
-    data = {name: values for name, (_, values) in columns(start, parameter, branch._frame, branch._rows).items()}
+    data = {name: values for name, (_, values) in branch._columns.items()}
     p, special = data[parameter], branch.special
     words = state(data["multiplier_re"].shape[1] // 2)
     result = outline(start, parameter, branch._frame, branch._rows) | common(branch, start, (parameter,), p, CODES)
@@ -53,6 +54,7 @@ def arrays_of(branch: Branch, origin: float) -> Arrays:
             name: data[name]
             for name in ("multiplier_re", "multiplier_im", "stop_distance", "min_impact_speed", "residual")
         },
+        **{column.name: data[column.name] for column in OF_CONTACTS if column.name in data},
         "unstable": data["unstable"].astype(np.int32),
         "status": np.zeros(len(p), np.int8),
         "special_impact": np.array([-1 if one.impact is None else one.impact for one in special], np.int32),

@@ -1,39 +1,40 @@
-"""The points of a branch as columns, and as a Dataset."""
+"""The points of a branch as columns."""
 
+from collections.abc import Iterable
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from vibro_sweep.analysis.continuation.recorded import Rows
 from vibro_sweep.analysis.periodic.orbit_multipliers import multipliers_of, squared
+from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses.flow import flow
 from vibro_sweep.oscillator.linear import Linear, forcing_period
 from vibro_sweep.tables.coordinates import state
-
-if TYPE_CHECKING:
-    import xarray
+from vibro_sweep.tables.file_columns import OF_CONTACTS
 
 
-def dataset(start: Solution, name: str, frame: tuple[int, int], rows: Rows) -> "xarray.Dataset":
-    """`columns` as a Dataset."""
-    import xarray
-
-    return xarray.Dataset(columns(start, name, frame, rows))
-
-
-def dataset_from_file(arrays: dict[str, np.ndarray], name: str) -> "xarray.Dataset":
-    """The same, from the arrays of a file (branch_arrays.py)."""
-    import xarray
-
+def columns_from_file(arrays: dict[str, np.ndarray], name: str) -> dict[str, tuple]:
+    """`columns`, from the arrays of a file (branch_arrays.py)."""
     words, sides = state(arrays["state"].shape[1] // 2), np.tile(arrays["impact_side"], (len(arrays["value"]), 1))
     values = {"multiplier_re": "multiplier", "multiplier_im": "multiplier", "impact_t": "impact", "impact_v": "impact"}
     result = {name: ("point", arrays["value"])} | {one: (("point", d), arrays[one]) for one, d in values.items()}
     result |= {word: ("point", arrays["state"][:, i]) for i, word in enumerate(words)}
     numbers = ("unstable", "stop_distance", "min_impact_speed", "residual")
     result |= {one: ("point", arrays[one]) for one in numbers}
-    return xarray.Dataset(result | {"impact_side": (("point", "impact"), sides)})
+    result |= {one.name: ("point", arrays[one.name]) for one in OF_CONTACTS if one.name in arrays}
+    return result | {"impact_side": (("point", "impact"), sides)}
+
+
+def of_contacts(orbits: Iterable[PeriodicOrbit]) -> dict[str, tuple]:
+    """The columns `OF_CONTACTS` of the orbits of all points."""
+    tables = [orbit.contacts for orbit in orbits]
+    fields = {"contact_force_max": "max_force", "penetration_max": "max_penetration"}
+    return {
+        name: ("point", np.array([table[key].max() if len(table) else np.nan for table in tables]))
+        for name, key in fields.items()
+    }
 
 
 def columns(start: Solution, name: str, frame: tuple[int, int], rows: Rows) -> dict[str, tuple]:

@@ -31,9 +31,9 @@ def followed(task: Task, progress=None) -> Branch:
     """The branch of a task; with the status failed where it cannot be followed, so that the others are not lost."""
     orbit, (parameter,), (bounds,) = task.seed.orbit(), task.names, task.bounds
     try:
-        return continue_orbit(orbit, parameter, bounds, progress)
+        return continue_orbit(orbit, parameter, bounds, progress, observe=task.observe)
     except ValueError:  # no orbit beside a special point is within the bounds
-        return not_followed(orbit, parameter)
+        return not_followed(orbit, parameter, bool(task.observe))
 
 
 def beyond(branch: Branch, task: Task) -> list[Seed]:

@@ -1,9 +1,10 @@
 """`follow_branches`: from branch to branch, over grazes, pitchforks and flips, generation by generation."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from vibro_sweep.analysis.branches import branch_text
-from vibro_sweep.analysis.branches.branch import Branch, continue_orbit
+from vibro_sweep.analysis.branches.branch import Branch, checked_observe, continue_orbit
 from vibro_sweep.analysis.branches.branch_orbits import Arrays, outline
 from vibro_sweep.analysis.branches.branch_search import Branches, beyond, followed
 from vibro_sweep.analysis.branches.search import Task
@@ -14,6 +15,7 @@ from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.checks.arguments import check_call, check_type, checked_count, names_its_arguments
 from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.checks.refusals import not_allowed
+from vibro_sweep.oscillator.linear import family_of
 from vibro_sweep.tables.bifurcations import WAYS
 
 
@@ -45,7 +47,13 @@ class FollowedBranch:
 
 @names_its_arguments
 def follow_branches(
-    orbit: PeriodicOrbit, parameter: str, bounds: tuple[float, float], follow=WAYS, depth: int = 1, progress=None
+    orbit: PeriodicOrbit,
+    parameter: str,
+    bounds: tuple[float, float],
+    follow=WAYS,
+    depth: int = 1,
+    progress=None,
+    observe: Iterable[str] = (),
 ) -> list[FollowedBranch]:
     """The branch of an orbit and those that are reached from it over special points of the types `follow`.
 
@@ -53,6 +61,7 @@ def follow_branches(
     that is known is not followed again, as a rotation or a mirror image neither. Towards an onset of sticking branches
     without end follow each other, with one impact more on each: they are followed until the special point "sticking" is
     nearer to the graze before it than 1e-4 of the range. progress(branches, points, value) is called now and then.
+    `observe` is that of `continue_orbit`.
 
     Raises ValueError for types that no branch leaves from, and as `continue_orbit` does for the orbit given. A branch
     that cannot be followed says so by its status.
@@ -69,14 +78,14 @@ def follow_branches(
     check_call("progress", progress, "progress(branches, points, value)", 0, 0, 0.0)
     if not isinstance(follow, (tuple, list)) or any(not isinstance(one, str) or one not in WAYS for one in follow):
         raise ArgumentError(not_allowed("follow", follow, f"a list of {', '.join(WAYS)}"))
-    depth = checked_count("depth", depth, 0)
+    depth, words = checked_count("depth", depth, 0), checked_observe(observe, family_of(orbit.system).linear)
     branches: dict[str, Branch] = {}
 
     def tell(points: int, value: float) -> None:
         if progress is not None:
             progress(len(branches), points, value)
 
-    first = continue_orbit(orbit, parameter, bounds, tell)
+    first = continue_orbit(orbit, parameter, bounds, tell, observe=words)
 
     def evaluate(names: list[str], tasks: list[Task]) -> list[Arrays]:
         result = []
@@ -89,7 +98,7 @@ def follow_branches(
         return result
 
     lo, hi = map(float, bounds)
-    branching = Branches((parameter,), ((lo, hi),), tuple(follow), at_once=1)
+    branching = Branches((parameter,), ((lo, hi),), tuple(follow), at_once=1, observe=words)
     nodes = branching.run([seed_of(orbit.system, StartingOrbit("orbit", orbit._solution))], depth, evaluate)
     found: list[FollowedBranch] = []
     for node in nodes:

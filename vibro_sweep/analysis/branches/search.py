@@ -25,12 +25,14 @@ class Node(NamedTuple):
 
 
 class Task(NamedTuple):
-    """A seed to be followed along `names` within `bounds`, and the types for which to look at the special points."""
+    """A seed to be followed along `names` within `bounds`, the types for which to look at the special points, and what
+    is observed."""
 
     seed: Seed
     names: tuple[str, ...]
     bounds: Bounds
     of: tuple[str, ...]
+    observe: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -41,12 +43,14 @@ class Search:
     of : of branches the types of special points beyond which others are looked for, of curves the types that are
     at_once : tasks that are evaluated before it is asked again which seeds lie on what is known; None: all of a
         generation
+    observe : what else is computed of each orbit of branches
     """
 
     names: tuple[str, ...]
     bounds: Bounds
     of: tuple[str, ...]
     at_once: int | None = None
+    observe: tuple[str, ...] = ()
 
     def passes(self, arrays: Arrays, seed: Seed) -> bool:
         """Whether a seed lies on the branch or curve with these arrays, also as a rotation or a mirror image."""
@@ -70,7 +74,7 @@ class Search:
             for begin in range(0, len(seeds), size):
                 batch = enumerate(seeds[begin : begin + size], begin)
                 todo = {f"{generation}:{i}": seed for i, seed in batch if not self.lies_on(found[first:], seed)}
-                tasks = [Task(seed, self.names, self.bounds, of) for seed in todo.values()]
+                tasks = [Task(seed, self.names, self.bounds, of, self.observe) for seed in todo.values()]
                 before = len(found)
                 for (name, seed), arrays in zip(todo.items(), evaluate(list(todo), tasks), strict=True):
                     if arrays and not self.lies_on(found[before:], seed) and not self.is_known(found, arrays, seed):

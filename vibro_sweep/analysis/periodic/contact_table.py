@@ -8,7 +8,7 @@ from vibro_sweep.engine.one_system import CONTACT
 from vibro_sweep.oscillator.linear import Linear
 
 SAMPLES = 65  # of a contact, between which its depth and its force have no two extrema
-HALVINGS = 60  # of such an interval
+FINER = 5  # times that such an interval is divided in as many: near an extremum values differ by the square of that
 
 
 def contacts_between(q: Linear, begins, lengths, sides, starts) -> np.ndarray:
@@ -54,9 +54,9 @@ class _Contact:
         times = np.linspace(0.0, length, SAMPLES)
         values, found = self.at(times)[which], []
         for i in np.flatnonzero((values[:-1] > 0) & (values[1:] <= 0)):
-            low, high = times[i], times[i + 1]
-            for _ in range(HALVINGS):
-                middle = (low + high) / 2
-                low, high = (middle, high) if self.at(np.array([middle]))[which][0] > 0 else (low, middle)
-            found.append(float(low))
+            finer, at = times, int(i)
+            for _ in range(FINER):
+                finer = np.linspace(finer[at], finer[at + 1], SAMPLES)
+                at = max(int(np.argmax(self.at(finer)[which] <= 0)) - 1, 0)
+            found.append(float(finer[at]))
         return found

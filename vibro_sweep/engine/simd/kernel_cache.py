@@ -35,6 +35,7 @@ PURPOSES = {  # of kernels that take long: what for, and seconds of processor ti
 }
 _log = logging.getLogger("vibro_sweep")
 _said: set[str] = set()
+_needed: list[str] = []  # of PURPOSES, by what is being computed
 slower = ""  # what is said besides, where compiling takes longer
 
 
@@ -89,9 +90,16 @@ def _announce(kernel: str, where: str) -> None:
     _once(logging.INFO, "compiling", "compiling kernels%s", where)
     if kernel in PURPOSES:
         purpose, seconds = PURPOSES[kernel]
-        _log.info("compiling for %s: about %d s of processor time", purpose, seconds)
+        is_one_of_several = kernel in _needed and len(_needed) > 1
+        count = f", {_needed.index(kernel) + 1} of {len(_needed)} that this needs" if is_one_of_several else ""
+        _log.info("compiling for %s: about %d s of processor time%s", purpose, seconds, count)
     if slower:
         _once(logging.INFO, "slower", slower)
+
+
+def announce_count(kernels: list[str]) -> None:
+    """Which of the kernels that take long what is computed next needs: so each is announced as one of so many."""
+    _needed[:] = kernels
 
 
 FOLDER = _folder()
