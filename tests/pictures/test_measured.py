@@ -55,10 +55,26 @@ def test_points_in_a_plane_and_along_branches():
     assert np.allclose((at[0], height[0]), (62 / (2 * np.pi), 0.1), rtol=1e-12)
 
 
+def test_points_beside_curves():
+    ball = vs.Oscillator.named("one_mass", zeta=0.02, F=0.37, omega=0.8, b=1.0, R=0.8, stops="right")
+    branch = vs.continue_orbit(vs.periodic_orbit(ball, itinerary="R", periods=2), "F", (0.3, 0.6))
+    graze = next(one for one in branch.special if one.type == "graze")
+    curve = vs.bifurcation_curve(graze, ("F", "omega"), ((0.3, 0.6), (0.75, 0.85)))
+    figure = vs.plot(curve, points={"F": [0.4], "omega": [0.8]})
+    assert marked(figure.axes[0]) == [([0.4], [0.8])]
+    with pytest.raises(vs.PlotError, match="points and relative exclude each other"):
+        vs.plot(curve, points={"F": [0.4], "omega": [0.8]}, relative=True)
+    for result, axes in ((curve, "F, omega"), (branch, "F, x1")):
+        with pytest.raises(vs.PlotError, match=f"has the columns F, z; axes here are {axes}"):
+            vs.plot(result, points={"F": [0.4], "z": [0.8]})
+
+
 @pytest.mark.parametrize(
     "points, said",
     [
         ({"frequency": [1.0], "depth": [2.0]}, "has the columns frequency, depth; axes here are frequency, x1"),
+        ({"frequency": [1.0], "X1": [2.0]}, "axes here are frequency, x1; did you mean `x1` by X1?"),
+        ({"freq": [1.0], "x1": [2.0]}, "axes here are frequency, x1; did you mean `frequency` by freq?"),
         ({"frequency": [1.0]}, "must have two columns at least"),
         ({"frequency": [1.0], "x1": [1.0, 2.0]}, "of one length"),
         ({"frequency": [1.0], "x1": ["a"]}, "holds other things than numbers"),

@@ -8,7 +8,7 @@ from typing import Any, TypeVar, overload
 import numpy as np
 
 from vibro_sweep.checks.errors import ArgumentError, ArgumentTypeError
-from vibro_sweep.checks.meant import did_you_mean
+from vibro_sweep.checks.meant import did_you_mean, meant
 from vibro_sweep.checks.not_computed import why_not_computed
 from vibro_sweep.checks.real import array_of, number_of
 from vibro_sweep.checks.refusals import cut, not_allowed
@@ -68,7 +68,9 @@ def checked_word(name, value, words, optional=False):
     if value is None and optional:
         return None
     if not (isinstance(value, str) and value in words):
-        raise ArgumentError(not_allowed(name, value, f"{'one of ' if len(words) > 1 else ''}{', '.join(words)}"))
+        likely = meant(value, words) if isinstance(value, str) else None
+        hint = f"; did you mean `{likely}`?" if likely else ""
+        raise ArgumentError(not_allowed(name, value, f"{'one of ' if len(words) > 1 else ''}{', '.join(words)}{hint}"))
     return str(value)
 
 

@@ -12,7 +12,7 @@ SYNONYMS = {
     "step": ("by", "increment", "delta", "dx", "stride"),
     "values": ("list", "value", "at"),
     "omega": ("w", "ω", "frequency", "freq", "Omega", "Ω"),
-    "b": ("clearance", "gap", "delta", "B"),
+    "b": ("clearance", "gap", "delta", "B", "stop_right", "stop_left"),
     "Omega": ("f", "frequency", "freq", "hz", "w"),
     "B": ("clearance", "gap", "delta"),
     "R": ("e", "restitution", "cor", "r"),

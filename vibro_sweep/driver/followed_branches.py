@@ -9,9 +9,10 @@ from vibro_sweep.analysis.branches.branch_arrays import SHAPES, Arrays
 from vibro_sweep.analysis.branches.branch_search import Branches, compute_branch
 from vibro_sweep.analysis.branches.search import Node
 from vibro_sweep.driver.executors import kept
-from vibro_sweep.driver.joining import columns_in_file, joined
+from vibro_sweep.driver.joining import joined
 from vibro_sweep.driver.origins import seeds_of
 from vibro_sweep.files.pieces import Pieces
+from vibro_sweep.results import ragged_dataset
 from vibro_sweep.scene import Continuation
 from vibro_sweep.tables.coordinates import state
 from vibro_sweep.tables.file_columns import BRANCHES, OF_CONTACTS
@@ -31,7 +32,7 @@ def followed_branches(
     together = np.concatenate(sections) if sections else np.zeros((0, 2 * masses))
     arrays |= {f"section_{name}": together[:, i] for i, name in enumerate(state(masses))}
     arrays["branch_sections"] = np.array([node.arrays["section"].shape[1] for node in nodes], int)
-    columns = columns_in_file(BRANCHES, names, scene.system, OF_CONTACTS if scene.observe else ())
+    columns = ragged_dataset.columns_in_file(BRANCHES, names, scene.system, OF_CONTACTS if scene.observe else ())
     return columns, arrays | where_met(nodes, arrays["branch_special"])
 
 

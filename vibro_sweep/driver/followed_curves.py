@@ -16,10 +16,11 @@ from vibro_sweep.analysis.windows.edges import Plane
 from vibro_sweep.analysis.windows.explained import explain, probe
 from vibro_sweep.driver.executors import kept
 from vibro_sweep.driver.followed_branches import where_met
-from vibro_sweep.driver.joining import columns_in_file, joined
+from vibro_sweep.driver.joining import joined
 from vibro_sweep.driver.origins import seeds_of, specials_of
 from vibro_sweep.driver.swept_plane import edges_in_file
 from vibro_sweep.files.pieces import Pieces
+from vibro_sweep.results import ragged_dataset
 from vibro_sweep.scene import Continuation
 from vibro_sweep.scene.continuation import BY_BRANCHES
 from vibro_sweep.tables.file_columns import CHART, OF_EDGES
@@ -47,7 +48,7 @@ def followed_curves(
         starts = _starts(scene, names, bounds, pool, file, progress)
         curves = Curves(names, bounds, scene.of).run(starts, scene.depth, evaluate)
     arrays = joined([curve.arrays for curve in curves], SHAPES, list(names), scene.system.masses)
-    columns = columns_in_file(CHART, list(names), scene.system, OF_EDGES if more else ())
+    columns = ragged_dataset.columns_in_file(CHART, list(names), scene.system, OF_EDGES if more else ())
     return columns, arrays | where_met(curves, arrays["branch_special"]) | more
 
 

@@ -6,31 +6,12 @@ columns with names.
 """
 
 from collections.abc import Mapping
-from dataclasses import replace
 
 import numpy as np
 
-from vibro_sweep.oscillator.oscillator import Oscillator
 from vibro_sweep.tables.coordinates import state
-from vibro_sweep.tables.file_columns import OF_FIRST, OF_PARAMETER, columns
-from vibro_sweep.tables.quantity import Quantity
-from vibro_sweep.tables.units import unit_in
 
 Arrays = dict[str, np.ndarray]
-
-
-def columns_in_file(
-    kind: str, parameters: list[str], system: Oscillator, more: tuple[Quantity, ...] = ()
-) -> list[Quantity]:
-    """All variables of a file, and more, in the units of a system."""
-    of_each = {name: system.described[name].units for name in parameters}
-    first, *others = of_each.values()
-    common = {OF_FIRST: first, OF_PARAMETER: first if all(other == first for other in others) else "1"}
-
-    def unit(column: Quantity) -> str:
-        return unit_in(of_each.get(column.name) or common.get(column.units, column.units), system.units)
-
-    return [replace(column, units=unit(column)) for column in (*columns(kind, parameters, system.masses), *more)]
 
 
 def joined(

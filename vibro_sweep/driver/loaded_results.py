@@ -18,7 +18,7 @@ from vibro_sweep.checks.arguments import names_its_arguments
 from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.checks.file_names import checked_path
 from vibro_sweep.driver.any_file import first_bytes
-from vibro_sweep.driver.joining import columns_in_file, part_of
+from vibro_sweep.driver.joining import part_of
 from vibro_sweep.driver.saved_results import ONE, Saved
 from vibro_sweep.driver.source_file import computed_from
 from vibro_sweep.files.file_errors import StoreError
@@ -115,7 +115,8 @@ def _windows(data: Sweep, arrays: Arrays, names: list[str]) -> Windows:
     attributes = {name: data.attrs[name] for name in ("sweep", "parameter", "sweep_shape", *chosen)}
     title = str(data.attrs["title"]).removeprefix("vibro_sweep: ")
     header = ragged_dataset.attributes_of(WINDOWS, title, data.attrs["scene"], attributes | {"parameters": names})
-    result._dataset = partial(ragged_dataset.dataset, header, columns_in_file(WINDOWS, names, system), arrays)
+    columns = ragged_dataset.columns_in_file(WINDOWS, names, system)
+    result._dataset = partial(ragged_dataset.dataset, header, columns, arrays)
     return result
 
 

@@ -16,7 +16,7 @@ from vibro_sweep.analysis.windows.window import Windows
 from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.checks.file_names import ExistingFileError, file_to_write
 from vibro_sweep.checks.refusals import ParameterError
-from vibro_sweep.driver.joining import columns_in_file, joined
+from vibro_sweep.driver.joining import joined
 from vibro_sweep.driver.origins import Source, attributes_of
 from vibro_sweep.driver.provenance import provenance
 from vibro_sweep.files.making import make
@@ -80,7 +80,8 @@ def _dataset(result: Saved) -> "xarray.Dataset":
     header = ragged_dataset.attributes_of(kind, title, scene.to_yaml(), attributes)
     columns_of_result = joined([arrays], shapes, names, system.masses) | none | more
     more_columns = OF_CONTACTS if contacts else ()
-    return ragged_dataset.dataset(header, columns_in_file(kind, names, system, more_columns), columns_of_result)
+    columns = ragged_dataset.columns_in_file(kind, names, system, more_columns)
+    return ragged_dataset.dataset(header, columns, columns_of_result)
 
 
 def _scene_of(

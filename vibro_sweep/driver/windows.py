@@ -21,7 +21,7 @@ from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.checks.file_names import checked_path, file_to_write
 from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.driver.executors import kept, workers_of
-from vibro_sweep.driver.joining import columns_in_file, joined
+from vibro_sweep.driver.joining import joined
 from vibro_sweep.driver.progress import given_or_bar
 from vibro_sweep.driver.provenance import provenance
 from vibro_sweep.driver.source_file import SourceError, run_id_of, swept
@@ -227,7 +227,7 @@ def _contents(search: WindowSearch) -> tuple:
         "orbit_reason": reason.ravel(),
     }
     arrays |= _unvisited(search, masses)
-    return columns_in_file(WINDOWS, names, first.system), arrays
+    return ragged_dataset.columns_in_file(WINDOWS, names, first.system), arrays
 
 
 def _unvisited(search: WindowSearch, masses: int) -> dict[str, np.ndarray]:

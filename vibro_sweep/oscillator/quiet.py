@@ -45,6 +45,9 @@ class Quiet(NamedTuple):
 def quiet(system: Oscillator, parameter: str, bounds: tuple[float, float]) -> Quiet:
     """Where a motion without contact exists while `parameter`, a number of the system, runs through bounds = (lo, hi).
 
+    A `Quiet`: `ranges` of such values within the bounds, `below` and `above` the nearest ones outside of them, or NaN,
+    and whether such a motion `attracts` others.
+
     Raises ValueError for a name that is not a number of the system, and for bounds that are none.
 
     Examples

@@ -53,7 +53,8 @@ def branches(path, options: PlotOptions) -> Panels:
     if options.over is not None and "branch_sections" not in file.arrays:
         raise PlotError(f"{file.name}: a file of windows is not drawn over a sweep; draw the sweep, with these windows")
     title = f"Branches of periodic orbits: {file.title}"
-    return Panels(title, 5.0, lambda axes: _draw(axes[0, 0], file, name, options))
+    measurable = (file.parameters[0], name)
+    return Panels(title, 5.0, lambda axes: _draw(axes[0, 0], file, name, options), measurable=measurable)
 
 
 def _draw(ax, file: RaggedFile, name: str, options: PlotOptions) -> None:

@@ -102,7 +102,7 @@ class Panels(NamedTuple):
 
     height : of a figure of it, in inches; draw : draws into its axes, (rows, columns); grid : more options of
     `subplots`; alone : whether it may be drawn into the first of its axes only; figure : a kind of figure that `draw`
-    gets in place of axes
+    gets in place of axes; measurable : numbers of axes in which measured points may lie
     """
 
     title: str
@@ -113,6 +113,7 @@ class Panels(NamedTuple):
     grid: Mapping[str, Any] = MappingProxyType({})
     alone: bool = False
     figure: type[Picture] | None = None
+    measurable: tuple[str, ...] = ()
 
 
 def page(

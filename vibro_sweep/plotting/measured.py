@@ -2,13 +2,14 @@
 
 import csv
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from vibro_sweep.checks.file_names import checked_path, read_bytes
+from vibro_sweep.checks.meant import meant
 from vibro_sweep.checks.real import array_of
 from vibro_sweep.checks.refusals import cut, not_allowed
 from vibro_sweep.plotting.source import PlotError
@@ -122,6 +123,17 @@ def _checked(
     if _OTHER.keys() <= columns.keys():
         raise PlotError(f"points: {name} must have one of the columns {' and '.join(_OTHER)}")
     return Measured(name, columns, units, wrong or {})
+
+
+def check_drawn(points: Measured | None, axes: list[Any], names: Collection[str]) -> None:
+    """Raise PlotError where measured points are given and no panel has axes for them; names : those that axes have."""
+    if points is None or any(line.get_gid() == "measured" for ax in axes for line in ax.lines):
+        return
+    unknown = next((name for name in points.columns if name not in names), "")
+    likely = meant(unknown, names)
+    hint = f"; did you mean `{likely}` by {cut(unknown)}?" if likely and likely not in points.columns else ""
+    columns = ", ".join(map(cut, points.columns))
+    raise PlotError(f"points: {points.name} has the columns {columns}; axes here are {', '.join(names)}{hint}")
 
 
 def draw_measured(ax: Any, points: Measured | None, x: tuple[str, str | None], y: tuple[str, str | None]) -> bool:

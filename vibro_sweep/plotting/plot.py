@@ -18,6 +18,7 @@ from vibro_sweep.checks.refusals import not_allowed, shown
 from vibro_sweep.plotting import branch_diagram, charts, film
 from vibro_sweep.plotting.drawn_sweep import DrawnSweep, PlotError
 from vibro_sweep.plotting.kind import Kind
+from vibro_sweep.plotting.measured import check_drawn
 from vibro_sweep.plotting.pictures import SUFFIXES, check_output, save
 from vibro_sweep.plotting.plot_options import PlotOptions, data_of, is_result
 from vibro_sweep.plotting.source import name_of, readable
@@ -189,26 +190,20 @@ def _figures(
         check([""])
         chart = charts.chart(data, options) if holds == CHART else nullcontext(branch_diagram.branches(data, options))
         with chart as panels:
-            yield "", options.draw(panels, ax)[0].figure
+            axes = options.draw(panels, ax)
+            check_drawn(options.points, axes, panels.measurable)
+            yield "", axes[0].figure
         return
     with DrawnSweep(data, options) as result, matplotlib.rc_context(options.style):
         chosen = _chosen(result, kind)
         check(chosen)
         for name in chosen:
             axes = options.draw(KINDS[name].panels(result), ax)
-            _check_measured(result, axes)
+            check_drawn(options.points, axes, (*result.sweep, *result.measurable))
             for panel in axes if result.failed else ():
                 text = "all points failed; `vibro-sweep info` says how"
                 panel.text(0.5, 0.55, text, transform=panel.transAxes, ha="center")
             yield name, axes[0].figure
-
-
-def _check_measured(result: DrawnSweep, axes: list[Axes]) -> None:
-    """Raise PlotError where measured points are given and no panel has axes for them."""
-    points = result.options.points
-    if points is not None and not any(line.get_gid() == "measured" for ax in axes for line in ax.lines):
-        names = ", ".join((*result.sweep, *(kind for kind in result.measurable)))
-        raise PlotError(f"points: {points.name} has the columns {', '.join(points.columns)}; axes here are {names}")
 
 
 def check_suffix(output: Path, kind: str | None) -> str | None:

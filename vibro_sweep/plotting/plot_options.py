@@ -70,6 +70,8 @@ class PlotOptions:
         beside = {name: getattr(self, name) for name in ("windows", "over")}
         checked |= {name: data_of(name, data) for name, data in beside.items() if data is not None}
         vars(self).update(checked)
+        if self.points is not None and self.relative:
+            raise PlotError("points and relative exclude each other: the axis of b is in parts of b*")
         for name, limits in (("xlim", self.xlim), ("ylim", self.ylim)):
             if limits and not (np.isfinite(limits).all() and limits[0] < limits[1]):
                 raise PlotError(f"{name}: {_text(limits)} is not allowed; it must be two numbers, the lower one first")

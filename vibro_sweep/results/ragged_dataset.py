@@ -1,20 +1,37 @@
 """Datasets of branches, curves and windows: ragged arrays, laid out one after another (CF, 9.3.3)."""
 
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import xarray
 
 from vibro_sweep.checks.refusals import cut, shown
+from vibro_sweep.oscillator.oscillator import Oscillator
 from vibro_sweep.results.described import described
-from vibro_sweep.tables.file_columns import OF_CONTACTS, OF_EDGES, RAGGED, RAGGED_KINDS, columns
+from vibro_sweep.tables.file_columns import OF_CONTACTS, OF_EDGES, OF_FIRST, OF_PARAMETER, RAGGED, RAGGED_KINDS, columns
 from vibro_sweep.tables.quantity import Quantity
+from vibro_sweep.tables.units import unit_in
 
 
 def attributes_of(kind: str, title: str, scene: str, attributes: Mapping[str, Any]) -> dict[str, Any]:
     """The attributes of such a Dataset. scene : the YAML text that was computed; of windows that of the sweep"""
     return {"kind": kind, "title": f"vibro_sweep: {title}", "scene": scene, "sweep_dimensions": [], **attributes}
+
+
+def columns_in_file(
+    kind: str, parameters: list[str], system: Oscillator, more: tuple[Quantity, ...] = ()
+) -> list[Quantity]:
+    """All variables of a file, and more, in the units of a system."""
+    of_each = {name: system.described[name].units for name in parameters}
+    first, *others = of_each.values()
+    common = {OF_FIRST: first, OF_PARAMETER: first if all(other == first for other in others) else "1"}
+
+    def unit(column: Quantity) -> str:
+        return unit_in(of_each.get(column.name) or common.get(column.units, column.units), system.units)
+
+    return [replace(column, units=unit(column)) for column in (*columns(kind, parameters, system.masses), *more)]
 
 
 def dataset(attributes: Mapping[str, Any], of: Iterable[Quantity], arrays: Mapping[str, np.ndarray]) -> xarray.Dataset:
@@ -23,6 +40,14 @@ def dataset(attributes: Mapping[str, Any], of: Iterable[Quantity], arrays: Mappi
         {x.name: (x.dimensions, np.asarray(arrays[x.name], x.dtype), described(x, x.units)) for x in of},
         attrs=dict(attributes),
     )
+
+
+def described_points(columns: Iterable[Quantity], points: xarray.Dataset) -> xarray.Dataset:
+    """Points of a branch or a curve with the words and units of their columns."""
+    for column in columns:
+        if column.name in points.variables:
+            points[column.name].attrs.update(described(column, column.units))
+    return points
 
 
 def check(data: xarray.Dataset) -> None:

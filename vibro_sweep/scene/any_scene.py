@@ -103,8 +103,11 @@ def _system_in(path: Path) -> object:
     try:
         data = read_yaml(path.read_text(encoding="utf-8-sig"))
     except (OSError, UnicodeDecodeError, YAMLTextError) as error:
-        why = getattr(error, "strerror", None) or str(error)
-        raise SceneError(path.name, [problem("system", path.name, f"that file cannot be read: {why}")]) from None
+        why = (
+            "it is no text" if isinstance(error, UnicodeDecodeError) else getattr(error, "strerror", None) or str(error)
+        )
+        text = f"that file cannot be read: {why}; it must be another scene"
+        raise SceneError(path.name, [problem("system", path.name, text)]) from None
     system = data.get("system") if isinstance(data, dict) else None
     if not isinstance(system, dict):
         raise SceneError(

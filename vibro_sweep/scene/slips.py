@@ -193,7 +193,9 @@ ONE_MASS = "one mass is one_mass, or a chain of one, as `vibro-sweep new one_mas
 
 
 def of_damping(key: str, keys: Iterable[str]) -> str | None:
-    """The hint for a damping ratio in a model of dampers; None for another key or model."""
+    """The hint for a damping ratio in a model of dampers, or the reverse; None for another key or model."""
+    if key in ("c", "C", "damper") and {"m", "k", "zeta"} <= {*keys}:
+        return "the damper is 2 zeta: write half the coefficient as zeta"
     if key not in ("zeta", "xi", "damping_ratio", "Q") or "c" not in keys:
         return None
     return "a damper is c = 2 zeta sqrt(k m); the type linear has modal_damping, a ratio for each mode"

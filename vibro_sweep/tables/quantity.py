@@ -123,4 +123,5 @@ class Parameter(Quantity):
     @property
     def long_name(self) -> str:
         """Label and name, as plain text."""
-        return f"{self.label} {self.name.removeprefix('start_')}"
+        name = self.name.removeprefix("start_")
+        return self.label if self.label.endswith(name) else f"{self.label} {name}"

@@ -244,7 +244,9 @@ def why_no_display(value: object) -> str:
     known: dict[str, str] = {}
     for name in names if isinstance(names, (list, tuple)) else ():
         unit = named_unit(name.strip()) if isinstance(name, str) else None
-        if unit is None or unit.word == "rad":
+        if isinstance(name, str) and "rad" in name:
+            return f"{name.strip()[:LONGEST]}: omega is in radians unless Hz is named; leave it out"
+        if unit is None:
             return f"{str(name)[:LONGEST]} is no unit here; known are {NAMES}"
         if unit.word in known:
             return f"{known[unit.word]} and {name.strip()} are units of one kind; write one of each kind"

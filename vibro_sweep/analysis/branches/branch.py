@@ -38,8 +38,9 @@ from vibro_sweep.checks.arguments import (
 )
 from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.checks.refusals import not_allowed
-from vibro_sweep.oscillator.linear import Linear, family_of
+from vibro_sweep.oscillator.linear import Family, Linear, family_of
 from vibro_sweep.oscillator.stops import NOT_PRESSED
+from vibro_sweep.tables.file_columns import BRANCHES, OF_CONTACTS
 from vibro_sweep.tables.observables import ALONG_BRANCHES
 
 if TYPE_CHECKING:
@@ -97,7 +98,13 @@ class Branch(FileResult):
         where `observe` has contacts, their largest force and penetration."""
         import xarray
 
-        return xarray.Dataset(self._columns).set_coords(self.parameter)
+        from vibro_sweep.results.ragged_dataset import columns_in_file, described_points
+
+        of = self.special[0].orbit.system
+        points = xarray.Dataset(self._columns).set_coords(self.parameter)
+        if isinstance(of, Family):  # whose numbers have no units
+            return points
+        return described_points(columns_in_file(BRANCHES, [self.parameter], of, OF_CONTACTS), points)
 
     @cached_property
     def _columns(self) -> dict[str, tuple]:

@@ -32,7 +32,8 @@ from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.engine.continuation.curve_tests import TOUCHING
 from vibro_sweep.engine.continuation.problem import GRAZE
 from vibro_sweep.engine.continuation.workspace import TEST, Place
-from vibro_sweep.oscillator.linear import family_of
+from vibro_sweep.oscillator.linear import Family, family_of
+from vibro_sweep.tables.file_columns import CHART
 
 if TYPE_CHECKING:
     import xarray
@@ -78,9 +79,16 @@ class BifurcationCurve(FileResult):
     @cached_property
     def points(self) -> "xarray.Dataset":
         """Dataset over `point`: parameters, multipliers, whether it is real, impacts (docs of `dataset`)."""
+        from vibro_sweep.results.ragged_dataset import columns_in_file, described_points
+
         if self._solution_curve is None or self._rows is None:
-            return dataset_from_file(self._arrays, self.parameters)
-        return dataset(self._solution_curve, self._rows)
+            points = dataset_from_file(self._arrays, self.parameters)
+        else:
+            points = dataset(self._solution_curve, self._rows)
+        of = self.special[0].orbit.system
+        if isinstance(of, Family):  # whose numbers have no units
+            return points
+        return described_points(columns_in_file(CHART, list(self.parameters), of), points)
 
     def _table(self) -> dict[str, list]:
         return table_of(self.special) | {"touches": [one.touches for one in self.special]}

@@ -90,7 +90,7 @@ def dataset_from_file(arrays: dict[str, np.ndarray], names: tuple[str, str]) -> 
     """The same, from the arrays of a file (curve_arrays.py), which has the impacts of whole orbits."""
     import xarray
 
-    one = branch_points.dataset_from_file(arrays | {"value": arrays["value"][:, 0]}, names[0])
+    one = xarray.Dataset(branch_points.columns_from_file(arrays | {"value": arrays["value"][:, 0]}, names[0]))
     if arrays["branch_symmetric"]:
         one = one.isel(impact=slice(one.sizes["impact"] // 2))
     more = {names[1]: ("point", arrays["value"][:, 1]), "virtual": ("point", arrays["status"] != 0)}

@@ -60,7 +60,8 @@ def from_itinerary(system, family, sides, periods, which: int = 0) -> PeriodicOr
         if len(real) > which:
             return replace(orbit_of(system, real[which]), others=len(real) - 1)
     if real:
-        raise ArgumentError(not_allowed("which", which, f"at most {len(real) - 1}: so many other orbits are found"))
+        allowed = f"at most {len(real) - 1}: so many other orbits are found" if real[1:] else "0: no other is found"
+        raise ArgumentError(not_allowed("which", which, allowed))
     if np.any(family.linear.restitution(sides) == 0):
         for start in kinds:
             for guess in evenly(start):
