@@ -43,6 +43,18 @@ def test_numbers_have_the_units_of_the_scene():
     assert {*units.values(), *axes.values()} == {("", 1)}
 
 
+def test_ranges_of_sliders_have_the_size_of_the_machine():
+    words, _, _ = opened(parsed(LEVER))
+    sliders = {one["name"]: one for one in words["numbers"]}
+    assert sliders["offset"]["value"] == 0 and 1e-4 < sliders["offset"]["high"] == -sliders["offset"]["low"] < 1e-2
+    assert sliders["preload"]["value"] == 0 and 0.1 < sliders["preload"]["high"] < 1000  # N, of a force of 40 N
+    for one in sliders.values():
+        assert one["low"] <= one["value"] <= one["high"]
+    words, _, _ = opened(vs.load_scene(ROOT / "configs" / "quickstart.yaml"))
+    offset = next(one for one in words["numbers"] if one["name"] == "offset")
+    assert (offset["low"], offset["high"]) == (-1, 1)
+
+
 def test_hertz_in_place_of_omega():
     """Whether omega is swept or not; only the view changes, and its scene computes the same."""
     lever = parsed(LEVER)

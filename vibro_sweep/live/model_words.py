@@ -27,11 +27,12 @@ from vibro_sweep.plotting.style import (
 from vibro_sweep.scene import Scene
 from vibro_sweep.tables.exponents import CERTAIN
 from vibro_sweep.tables.outcomes import NOT_COMPUTED, NOT_SETTLED, STATUSES
-from vibro_sweep.tables.parameters import CYCLES, FREQUENCY
+from vibro_sweep.tables.parameters import CLEARANCE, CYCLES, FREQUENCY
 from vibro_sweep.tables.quantity import NUMBER, POSITIVE, Parameter
-from vibro_sweep.tables.units import Display, unit_in, unit_text
+from vibro_sweep.tables.units import Display, unit_in, unit_text, written_unit
 
 DECADE = 10.0
+WHOLE = 1.0  # of a range up to this a slider has all, as of R
 LARGEST = sys.float_info.max
 STIFFNESSES = {names[0] for names in COMPLIANT.names.values()}  # of stops: over decades, though one may be 0
 _GREEK = {
@@ -48,7 +49,7 @@ def model_words(scene: Scene, view: View) -> dict[str, Any]:
     other = FREQUENCY.name if by_cycles(view) else CYCLES.name  # of which one stands in place of the other
     display = display_of_scene(scene)
     numbers = [
-        _slider(quantity, value, view, stops, system.numbers.get(name, value) is None)
+        _slider(quantity, value, view, system, system.numbers.get(name, value) is None)
         | _shown(quantity.units, system, display.angular if name == FREQUENCY.name else display)
         for name, quantity in system.described.items()
         if name != other
@@ -82,20 +83,21 @@ def _value(system: Oscillator, view: View, quantity: Parameter) -> Any:
     return numbers_now[quantity.follows] if quantity.follows and value is None else value
 
 
-def _slider(quantity: Parameter, value: float, view: View, stops: str, left_out: bool) -> dict[str, Any]:
+def _slider(quantity: Parameter, value: float, view: View, system: Oscillator, left_out: bool) -> dict[str, Any]:
     """A number and the range of its slider: where its values can be at all, around the one that it has; left out, it
     follows another one."""
-    allowed = range_of(quantity, stops)
+    allowed, least = range_of(quantity, system.options.get("stops", "both")), _least_reach(quantity, value, system)
     logarithmic = allowed.bounds == POSITIVE.bounds or (quantity.name in STIFFNESSES and value > 0)
     bounds = allowed.bounds
-    if "maximum" in bounds:
+    if bounds.get("maximum", LARGEST) <= WHOLE:
         low, high = bounds["minimum"], bounds["maximum"]
     elif logarithmic:
         low, high = value / DECADE, value * DECADE
     elif "minimum" in bounds:
-        low, high = bounds["minimum"], max(4 * value, 1.0)
+        low, high = bounds["minimum"], max(4 * value, least)
     else:
-        low, high = value - max(1.0, 2 * abs(value)), value + max(1.0, 2 * abs(value))
+        reach = max(least, 2 * abs(value))
+        low, high = value - reach, value + reach
     if quantity.name == view.axis:
         low, high, logarithmic = *view.ends, False
     words = {"name": quantity.name, "symbol": _plain(quantity.symbol), "label": quantity.label}
@@ -103,6 +105,18 @@ def _slider(quantity: Parameter, value: float, view: View, stops: str, left_out:
     low, high = max(low, -LARGEST), min(high, LARGEST)
     words |= {"leader": quantity.follows, "follows": bool(quantity.follows) and left_out}
     return words | {"low": low, "high": high, "log": logarithmic, "allowed": (allowed or NUMBER).text}
+
+
+def _least_reach(quantity: Parameter, value: float, system: Oscillator) -> float:
+    """How far a slider reaches at least: 1 where there are no units; of a number with a unit that is 0 what mass, gap
+    and frequency of the force make of it, as a force m b omega^2."""
+    powers, q = written_unit(quantity.units).powers, system.linear
+    if not powers or system.units is None:
+        return 1.0
+    sizes = {"kg": np.abs(q.M).max(), "m": abs(system.numbers.get(CLEARANCE.name) or 1.0), "s": 1 / q.omega}
+    with np.errstate(all="ignore"):
+        reach = float(np.prod([sizes[base] ** power for base, power in powers.items()]))
+    return 0.0 if value else reach if 0 < reach < LARGEST else 1.0
 
 
 def _declared(scene: Scene) -> dict[str, str]:

@@ -110,26 +110,30 @@ export class Drawing {
     if (!data.exponents) return;
     this.context.fillStyle = theme.tint;
     for (let c = 0; c < data.columns; c++) {
-      const at = c * data.starts * data.K;
-      if (!(data.exponents[at] > certain * data.errors[at])) continue;
       const [from, to] = pixelsOf(data, view, c, place.dots.w);
       const left = Math.max(0, from), right = Math.min(place.dots.w, to);
+      if (right <= left) continue;
       this.context.globalAlpha = this.opacity(data, c);
-      if (right > left) this.context.fillRect(place.exponents.x + left, place.exponents.y, right - left, place.exponents.h);
+      for (const [s, y, h] of rowsOf(data, place.exponents)) {
+        const at = (c * data.starts + s) * data.K;
+        if (data.exponents[at] > certain * data.errors[at]) this.context.fillRect(place.exponents.x + left, y, right - left, h);
+      }
     }
   }
 
   strip(data, view, place, colours) {
     const { strip } = place;
     for (let c = 0; c < data.columns; c++) {
-      const period = data.period[c * data.starts];
-      if (period < 0) continue;
       const [from, to] = pixelsOf(data, view, c, strip.w);
       const left = Math.max(0, from), right = Math.min(strip.w, to);
       if (right <= left) continue;
       this.context.globalAlpha = this.opacity(data, c);
-      this.context.fillStyle = periodColour(period, colours);
-      this.context.fillRect(strip.x + left, strip.y, right - left, strip.h);
+      for (const [s, y, h] of rowsOf(data, strip)) {
+        const period = data.period[c * data.starts + s];
+        if (period < 0) continue;
+        this.context.fillStyle = periodColour(period, colours);
+        this.context.fillRect(strip.x + left, y, right - left, h);
+      }
     }
   }
 
@@ -341,6 +345,11 @@ export function themeOf(element) {
     unstable: dark ? "#ff8f8f" : "#c01830", grazing: dark ? "#d59cf0" : "#7b3294",
     window: dark ? "rgba(106,180,244,.16)" : "rgba(31,111,180,.12)",
   };
+}
+
+// [start, top, height]: that of the first start, or of up and down one above the other
+function rowsOf(data, box) {
+  return data.both ? [[0, box.y, box.h / 2], [1, box.y + box.h / 2, box.h / 2]] : [[0, box.y, box.h]];
 }
 
 // the pixels [from, to) of a column: neighbours meet in the middle
