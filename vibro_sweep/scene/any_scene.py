@@ -61,6 +61,7 @@ class AnyScene(ABC):
         usual = {"offset": 0.0, "m": 1.0}  # which most oscillators have
         known = {name: value for name, value in system.numbers.items() if value not in (None, usual.get(name))}
         known |= {name: value for name, value in system.options.items() if value is not None}
+        known |= {} if system.units is None else {"units": system.units.names}
         changing = {own_name(name) for name in without}
         said = wording.numbers({name: value for name, value in known.items() if name not in changing})
         kind = "" if system.model.name == DEFAULT else f"{system.model.name}: "

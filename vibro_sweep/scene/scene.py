@@ -17,7 +17,7 @@ from vibro_sweep.oscillator.models import MODELS
 from vibro_sweep.oscillator.oscillator import Oscillator
 from vibro_sweep.tables.coordinates import START, start
 from vibro_sweep.tables.parameters import CYCLES, FREQUENCY
-from vibro_sweep.tables.units import NONE, unit_in
+from vibro_sweep.tables.units import shown_unit, unit_in
 
 from .any_scene import AnyScene, parsed
 from .combinations import combination_problems, stop_problems
@@ -234,8 +234,8 @@ class Scene(AnyScene):
 
     def _unit(self, key: str) -> str:
         """The unit of a swept number, in brackets."""
-        unit = unit_in(self.system.described[key].units, self.system.units) if key in self.system.described else NONE
-        return "" if unit == NONE else f" [{unit}]"
+        known = self.system.described
+        return shown_unit(unit_in(known[key].units, self.system.units)) if key in known else ""
 
     def parameters(self) -> dict[str, np.ndarray]:
         """Every number of the system by name, `tau` resolved, and swept numbers of the start (start_x1, ...).

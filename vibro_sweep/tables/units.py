@@ -69,6 +69,11 @@ class Units(NamedTuple):
     m: float
     s: float
 
+    @property
+    def names(self) -> str:
+        """As people write them, "kg, mm, s"."""
+        return "SI" if self == SI else ", ".join(unit_text(unit_in(base, self)) for base in _BASE)
+
     def __repr__(self) -> str:
         return repr("SI" if self == SI else tuple(self))
 
