@@ -2,12 +2,13 @@
 
 import numpy as np
 import pytest
+from reference.closed_orbit import ClosedOrbit, impacts_of
+from reference.machine import machine_of
 from support import slow_cases
 from support.frames import frame_of_one
 
 import vibro_sweep as vs
 from vibro_sweep.engine.coordinates import frame
-from vibro_sweep.engine.period_map import PeriodMap
 
 CASES = pytest.mark.parametrize(
     ("k", "c", "stop_at"),
@@ -60,16 +61,19 @@ def test_frames_of_random_chains(count):
 @pytest.mark.slow
 @CASES
 def test_exponents_are_those_of_the_jacobians(k, c, stop_at):
-    """Of the period map, whose flights know no frame."""
+    """Those of the reference, which knows no frame, from the impacts of each period."""
     chain, periods = chain_of(k, c, stop_at), 200
     exponents = vs.lyapunov(chain, np.zeros(6), transient=20, record=periods)
     assert abs(exponents.residual) < 1e-11
-    step, state = PeriodMap(chain), vs.simulate(chain, np.zeros(6), 20).section[-1:]
-    Q, growth = np.eye(6), np.zeros(6)
+    machine = machine_of(chain.linear)
+    state, Q, growth = vs.simulate(chain, np.zeros(6), 20).section[-1], np.eye(6), np.zeros(6)
     for _ in range(periods):
-        mapped = step(state, jacobian=True)
-        Q, R = np.linalg.qr(mapped.jacobian[0] @ Q)
+        orbit = vs.simulate(chain, state, 1)
+        hits = orbit.impacts
+        period = ClosedOrbit(machine, impacts_of(machine, hits["side"]), 1)  # it need not be closed
+        jacobian = np.array(period.closure(list(state), hits["t"].tolist()).tolist(), float)
+        Q, R = np.linalg.qr(jacobian @ Q)
         growth += np.log(np.abs(np.diag(R)))
-        state = mapped.states
+        state = orbit.section[-1]
     found = np.sort(growth)[::-1] / (periods * chain.period)
     assert np.all(np.abs(exponents - found) < 3e-3 + exponents.error)

@@ -11,12 +11,15 @@ from reference.certified import POSITIVE, REAL, of_masses
 from support.decades import DECADES, EPS
 from support.drawn_oscillators import drawn
 from support.searching import Report, new_report
+from vibro_sweep.engine import points
+from vibro_sweep.engine.motion.orbits import new_records
 from vibro_sweep.engine.one_system import Engine
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.tables import outcomes as status
 
 MASSES = (1, 2, 3, 4, 5, 8)
 BATCH = 4000  # flights drawn for an oscillator: some end behind a stop where they should begin
+MOST = 256  # impacts of a flight that there is room for
 CHAIN = 8 * EPS  # of the largest terms of the gap along the flight: rounding allowed from the section to the contact
 
 
@@ -53,12 +56,24 @@ def flights(reference, system, count, rng):
     return start[kept, :states].astype(float), decade[kept], missing[kept]
 
 
+def carry_eight(engine, states):
+    """Carry orbits from up to eight states (n, 2 N) in contact coordinates over a period: records, impacts."""
+    eight = engine.ensemble.orbits
+    eight["status"] = status.NOT_COMPUTED
+    for lane, state in enumerate(states):
+        engine.put(state, lane=lane)
+    eight["periods"] = 1
+    records = new_records(LANES, impacts=MOST, masses=engine.kind.masses)
+    engine._run(points.MOTION, 1, records=records)
+    return eight[: len(states)], records
+
+
 def first_impacts(engine, states):
     """Time and side of the first impact of each flight within a period; infinite and 0 where there is none."""
     times, sides = np.full(len(states), np.inf), np.zeros(len(states))
     begins = engine.to_contact(states)
     for first in range(0, len(states), LANES):
-        orbits, records = engine.carry_eight(begins[first : first + LANES], 0, 1)
+        orbits, records = carry_eight(engine, begins[first : first + LANES])
         assert (orbits["status"] == status.OK).all()
         for lane, logged in enumerate(orbits["impacts_logged"]):
             if logged:

@@ -24,8 +24,7 @@ from vibro_sweep.engine.coordinates.frame import frame_of
 from vibro_sweep.engine.records import Kind, point_of
 from vibro_sweep.engine.tables import cells
 from vibro_sweep.engine.tables.flight import WIDTH
-from vibro_sweep.oscillator.linear import MOTION, Linear, selected
-from vibro_sweep.oscillator.sensitivity import grazing_state
+from vibro_sweep.oscillator.linear import MOTION, Linear, grazing_state, selected
 from vibro_sweep.oscillator.stacks import dot
 from vibro_sweep.oscillator.steady import gap_responses, steady_amplitudes
 

@@ -1,4 +1,4 @@
-"""The tables of one system, and the motion of eight of its orbits: the base of `simulate` and `PeriodMap`."""
+"""The tables of one system, and the motion of its orbits: the base of `simulate` and `discontinuity_map`."""
 
 import sys
 
@@ -46,8 +46,6 @@ CONTACT = np.dtype(
         ("max_penetration", float), ("max_force", float),
     ]
 )  # fmt: skip
-
-ROOM = 256  # impacts and rests of each of eight orbits there is room for at first
 
 
 def unrepeated(values) -> np.ndarray:
@@ -117,13 +115,11 @@ def is_paper(system, axes: dict[str, np.ndarray] | None = None) -> bool:
     return not np.any(offset) or not is_far(np.max(np.abs(offset)), np.min(np.abs(b)))
 
 
-def point_of_one(system, later: float, rate: float) -> tuple[np.ndarray, Kind]:
-    """The POINT (1,) of a system whose phase is moved on by `later`, in the unit of time 1/rate, and its kind."""
+def point_of_one(system, rate: float) -> tuple[np.ndarray, Kind]:
+    """The POINT (1,) of a system in the unit of time 1/rate, and its kind."""
     if is_paper(system):
-        parameters = system.parameters()
-        return points_of(parameters | {"tau": parameters["tau"] + later}, system.stops).reshape(1), PAPER
-    q = in_own_time(system.linear, rate)
-    one = stacked([q._replace(tau=q.tau + later)])
+        return points_of(system.parameters(), system.stops).reshape(1), PAPER
+    one = stacked([in_own_time(system.linear, rate)])
     kind = kind_of(one)
     return any_points(one, kind), kind
 
@@ -136,15 +132,14 @@ class Engine:
 
     system : a System, or an oscillator with `linear`, `omega` and `period`. States are those of the masses; the orbits
         themselves move in contact coordinates (`to_contact`, `to_masses`).
-    later : radians by which the phase of the force at t = 0 is moved on
     rate : orbits move in the unit of time 1/rate; times and states of the masses are in that of the system
 
     Raises `ParameterError` where the rates of the system lie too far apart.
     """
 
-    def __init__(self, system, later: float = 0.0, rate: float = 1.0):
-        self._made_of, self.system, self.rate = (system, later, rate), system, rate
-        self.point, self.kind = point_of_one(system, later, rate)
+    def __init__(self, system, rate: float = 1.0):
+        self._made_of, self.system, self.rate = (system, rate), system, rate
+        self.point, self.kind = point_of_one(system, rate)
         self.states = 2 * self.kind.masses
         self.is_system = isinstance(system, System)
         self.cells = int(self.point["cells"][0])
@@ -205,6 +200,13 @@ class Engine:
         return not self.kind.paper and bool(self.point["turned"][0])
 
     @property
+    def contact_matrices(self) -> tuple[np.ndarray, np.ndarray]:
+        """(N, N) of displacements of the masses to contact coordinates, and back."""
+        if self.turned:
+            return self.point["P"][0], self.point["back"][0]
+        return np.eye(self.kind.masses), np.eye(self.kind.masses)
+
+    @property
     def middle(self) -> float:
         """The gap of the masses where it is 0 in contact coordinates."""
         return float(self.point["P"][0, 0] @ self.point["origin"][0]) if self.turned else 0.0
@@ -257,23 +259,6 @@ class Engine:
         self._run(points.MOTION, 1, section[None], records=records, **kept)
         return int(self.orbit["status"][0])
 
-    def carry_eight(self, states: np.ndarray, cell: int, periods: int) -> tuple[np.ndarray, orbits.Records]:
-        """Carry orbits from up to eight states (n, 2 N) in contact coordinates, none behind a stop, at this cell over
-        the ends of so many periods. Returns their records (`orbit_of`), and all impacts and rests of each."""
-        eight, room = self.ensemble.orbits, ROOM
-        while True:
-            eight["status"] = status.NOT_COMPUTED
-            for lane, state in enumerate(states):
-                self.put(state, cell, lane=lane)
-            eight["periods"] = periods
-            records = orbits.new_records(LANES, impacts=room, rests=room, masses=self.kind.masses)
-            self._run(points.MOTION, 1, records=records)
-            here = eight[: len(states)]
-            logged = max(here["impacts_logged"].max(), here["rests_logged"].max())
-            if logged <= room:
-                return here, records
-            room = int(logged)
-
     def locate(self, times) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Period, cell and offset of absolute times."""
         times = np.asarray(times, float)
@@ -291,15 +276,8 @@ class Engine:
 
         Of the paper's oscillator `IMPACT`; of others with x and xdot (N,) of all masses before the impact.
         """
-        return self.impacts_of(rows[:, :5], self.impact_states(rows), start)
-
-    def impact_states(self, rows: np.ndarray) -> np.ndarray:
-        """States (..., 2 N) of the masses before recorded impacts (..., 3 + 2 N)."""
-        wall = np.where(rows[..., 3:4] > 0, self.stops.right, self.stops.left)
-        return self.to_masses(np.concatenate([wall, rows[..., 4:]], -1))
-
-    def impacts_of(self, rows: np.ndarray, states: np.ndarray, start: float = -np.inf) -> np.ndarray:
-        """The same from rows (m, 5) of period, cell, offset, side and speed of the gap, and states of the masses."""
+        wall = np.where(rows[:, 3:4] > 0, self.stops.right, self.stops.left)
+        states = self.to_masses(np.concatenate([wall, rows[:, 4:]], -1))
         result = np.empty(len(rows), IMPACT if self.is_system else impact_of(self.kind.masses))
         result["t"] = np.maximum(self.time(rows[:, 0], rows[:, 1], rows[:, 2]), start)  # cell and offset round it
         result["side"], result["v1"] = rows[:, 3], rows[:, 4] * self.rate

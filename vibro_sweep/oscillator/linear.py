@@ -344,3 +344,21 @@ def roots(q: Linear) -> np.ndarray:
     with np.errstate(all="ignore"):
         matrix = np.block([[np.zeros((n, n)), np.eye(n)], [-inverse @ q.K, -inverse @ q.C]])
     return np.linalg.eigvals(matrix) if np.isfinite(matrix).all() else np.full(2 * n, np.nan)
+
+
+def push_of(q: Linear) -> np.ndarray:
+    """(N,): what an impulse that changes the gap's velocity by 1 does to the masses, p = M^-1 n/(n.M^-1 n)."""
+    push = np.linalg.solve(q.M, q.normal)
+    return push / (q.normal @ push)
+
+
+def grazing_state(q: Linear) -> np.ndarray:
+    """X* (2 N,): the steady motion without a constant force where its gap is largest, which is at rest there.
+
+    Infinite or NaN where there is no steady motion.
+    """
+    x, n = amplitudes(q), q.normal
+    x = x * np.exp(-1j * np.angle(n @ x))
+    state = np.stack([x.real, -q.omega * x.imag], -1)
+    state[:, 1] -= push_of(q) * (n @ state[:, 1])  # but for rounding it is zero
+    return state.reshape(-1)

@@ -15,7 +15,6 @@ RIGID_ALONE = (
 DAMPER_ALONE = "unless the stop is a damper alone, with c_stop > 0 and without a preload"
 NEEDS_IMPACTS = {  # what rigid stops have alone, and why
     "map": "the discontinuity mapping takes the place of impacts",
-    "period map": "the derivatives of a period map are those of impacts",
     "born at grazing": "orbits are born at the grazing of rigid stops",
     "section": "a compliant stop is pressed, and has no impacts",
 }

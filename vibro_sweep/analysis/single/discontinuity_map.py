@@ -7,7 +7,9 @@ from vibro_sweep.checks.arguments import names_its_arguments
 from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.checks.real import number_of
 from vibro_sweep.checks.refusals import not_allowed
-from vibro_sweep.engine.period_map import PeriodMap
+from vibro_sweep.engine.motion.discontinuity import iterate_one
+from vibro_sweep.engine.one_system import Engine
+from vibro_sweep.oscillator.linear import gap_response, grazing_state, push_of, rigid_family_of
 from vibro_sweep.oscillator.oscillator import Oscillator, checked_system
 from vibro_sweep.tables.coordinates import checked_state
 
@@ -33,20 +35,46 @@ class DiscontinuityMap:
         at = None if expand_at is None else number_of(expand_at)
         if expand_at is not None and (at is None or not 0 < at < np.inf):
             raise ArgumentError(not_allowed("expand_at", expand_at, "a finite number > 0"))
-        self._map = PeriodMap(system, int(order), at)
-        self.graze, self._masses = self._map.graze, len(system.linear.normal)
-        self._at = float(system.linear.normal @ self.graze[0::2])
+        rigid_family_of(system, "map")
+        _check_symmetric(system)
+        self._system, self._order = system.replace(tau="grazing"), int(order)
+        q, self._engine = self._system.linear, Engine(self._system)
+        self.graze = grazing_state(q)
+        if at is not None:  # in the direction of an impulse
+            self.graze[0::2] += (at - q.normal @ self.graze[0::2]) * push_of(q)
+        self._at = float(q.normal @ self.graze[0::2])
 
     def __repr__(self) -> str:
-        return f"<DiscontinuityMap of order {self._map.order}, expanded at b = {self._at:.10g}; {self._map.system}>"
+        return f"<DiscontinuityMap of order {self._order}, expanded at b = {self._at:.10g}; {self._system}>"
 
     def __call__(self, state: ArrayLike) -> np.ndarray:
         """The state (2 N,) one period later."""
-        return self._map([checked_state(state, self._masses)]).states[0]
+        return self._iterated(state)[0]
 
     def jacobian(self, state: ArrayLike) -> np.ndarray:
         """(2 N, 2 N) derivative of the map, singular like 1/sqrt(psi) at a graze."""
-        return self._map([checked_state(state, self._masses)], jacobian=True).jacobian[0]
+        return self._iterated(state)[1]
+
+    def _iterated(self, state: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
+        """The state one period later and its derivative; NaN where the map leads out of the floats."""
+        engine, masses = self._engine, len(self.graze) // 2
+        values = checked_state(state, masses)
+        to, back = (np.kron(matrix, np.eye(2)) for matrix in engine.contact_matrices)
+        X, J, c, scratch = to @ values, to.copy(), np.empty((masses, 3)), np.empty((3, 2 * masses))
+        iterate_one(engine.flight, engine.stops, to @ self.graze, X, J, scratch[0], c, *scratch[1:], self._order == 2)
+        if not np.isfinite(X).all():
+            X[:] = np.nan
+        return back @ X, back @ J
+
+
+def _check_symmetric(system: Oscillator) -> None:
+    """Check what the mapping needs: the two halves of a period are mirror images, and a steady motion."""
+    q = system.linear
+    if getattr(system, "offset", 0.0) != 0 or q.R_low != q.R_high or np.any(q.constant):
+        allowed = "one with equal stops about 0 and without a constant force, for the discontinuity mapping"
+        raise ArgumentError(not_allowed("system", system, allowed))
+    if not gap_response(q):
+        raise ArgumentError(not_allowed("system", system, "one whose gap has a steady motion, which grazes"))
 
 
 @names_its_arguments

@@ -17,20 +17,46 @@ Order 2: the jerk at the graze vanishes, so near it x1 - b = psi + v1 t + a t^2/
 with an impact if and only if the peak psi - v1^2/(2 a) lies beyond the stop; C1 is wrong by O(eps^3). The flight of the
 impulse, e^{-A t} e_v, is exact. Cut off after -t A e_v it would serve as well near the graze; but on attractors t is
 not small, and the orbits of the map so cut off run away to infinity. C2 mirrors C1.
+
+Of tangent vectors C1 makes DC = 1 + e p^T - u r^T with e = e^{-A t} e_v, u = A e; p is the gradient of -(1 + R) w, and
+r that of t, times -(1 + R) w. At order 1, r = 0 and p = (1 + R) (a/w) e_x: there is the singularity of the square root.
+Then |det DC| = 1; order 2 has R^2 at the graze, like the impact.
 """
 
 import math
 
 import numpy as np
 
-from vibro_sweep.engine.graze import impact_near_graze, impact_slopes
 from vibro_sweep.engine.motion.impacts import count_impact, log_impact
-from vibro_sweep.engine.simd.jit import jit
+from vibro_sweep.engine.simd.jit import exported, jit
 from vibro_sweep.engine.simd.lanes import alike
 from vibro_sweep.engine.tables.flight import decaying
 from vibro_sweep.engine.variational import tangent_flight
 from vibro_sweep.engine.variational.orthonormal import watch
 from vibro_sweep.tables import outcomes as status
+
+
+@jit
+def impact_near_graze(a, psi, v, second):
+    """Speed w of the impact, 0 where there is none, and the time `late` by which the section is later than it.
+
+    Seen from the stop that is hit: psi is how far x1 lies beyond it, v the velocity towards it and a < 0 the
+    acceleration, all at the section.
+    """
+    # (34): w^2 = -2 a psi [+ v^2]
+    square = -2.0 * a * psi + (v * v if second else 0.0)
+    if not (square > 0.0 and a < 0.0):
+        return 0.0, 0.0
+    w = math.sqrt(square)
+    # (33): late = [(w - v)/a]
+    return w, (w - v) / a if second else 0.0
+
+
+@jit
+def impact_slopes(a, psi, v, w, late, second, da, d_psi, dv):
+    """Derivatives of `w` and `late` in a direction in which a, psi and v have the derivatives da, d_psi and dv."""
+    dw = ((v * dv if second else 0.0) - psi * da) / w - a / w * d_psi
+    return dw, (dw - dv - late * da) / a if second else 0.0
 
 
 @jit
@@ -41,21 +67,62 @@ def map_period(f, stops, o, records, t, second):
     for side in (1.0, -1.0):
         if t.wanted:
             tangent_flight.fly_to(t, o.lane, q, f.nodes, 0 if side > 0.0 else half, 0.0)
-        if side > 0.0 and stops.right < np.inf:
-            jump(f, stops.right, stops.R_right, 1.0, o, records, t, second)  # (41)
-        elif side < 0.0 and stops.left > -np.inf:
-            jump(f, -stops.left, stops.R_left, -1.0, o, records, t, second)
-        fly_half(f.nodes[half].E, q.graze, side, o)
+        b, R = wall_of(stops, side)
+        w, late = meet_stop(q, q.graze, b, R, side, o.X, second, o.y, t.before, t.after, t.wanted)
+        if w > 0.0:  # (41)
+            count_impact(o, side, w)
+            log_impact(o, records, 0 if side > 0.0 else half, 0.0, side, side * w, o.X)
+            strike(q, R, side, w, late, o.X, o.c)
+            if t.wanted:
+                turn_vectors(q, o, t, second)
+        fly_half(f.nodes[half].E, q.graze, side, o.X, o.y)
     total = 0.0
     for i in range(states):
         total += o.X[i]
     return status.OK if math.isfinite(total) else status.NOT_FINITE
 
 
+@exported
+def iterate_one(f, stops, graze, X, J, d, c, p, r, second):
+    """One iteration of P on a state X (2 N,), and J (2 N, 2 N), the derivatives of it by something, to those after it.
+
+    graze (2 N,): X*; d, p, r (2 N,) and c (N, 3): scratch.
+    """
+    q, half = f.oscillator[0], f.oscillator[0].cells // 2
+    for side in (1.0, -1.0):
+        b, R = wall_of(stops, side)
+        w, late = meet_stop(q, graze, b, R, side, X, second, d, p, r, True)
+        if w > 0.0:
+            strike(q, R, side, w, late, X, c)
+            for j in range(len(graze)):
+                kick, shift = 0.0, 0.0
+                for i in range(len(graze)):
+                    kick += p[i] * J[i, j]
+                    shift += r[i] * J[i, j]
+                for m in range(len(c)):
+                    J[2 * m, j] += c[m, 0] * kick - c[m, 1] * shift
+                    J[2 * m + 1, j] += c[m, 1] * kick - c[m, 2] * shift
+        E = f.nodes[half].E
+        fly_half(E, graze, side, X, d)
+        for j in range(len(graze)):
+            for i in range(len(graze)):
+                d[i] = J[i, j]
+            for i in range(len(graze)):
+                J[i, j] = 0.0
+                for k in range(len(graze)):
+                    J[i, j] += E[k, i] * d[k]
+
+
 @jit
-def fly_half(E, graze, side, o):
-    """Phi_{T/2} from the side's graze to the other's: X -> -X* + L (X - X*)."""
-    X, d, states = o.X, o.y, 2 * len(o.c)
+def wall_of(stops, side):
+    """How far a stop is from the middle, infinite where there is none, and its R."""
+    return (stops.right, stops.R_right) if side > 0.0 else (-stops.left, stops.R_left)
+
+
+@jit
+def fly_half(E, graze, side, X, d):
+    """Phi_{T/2} from the side's graze to the other's: X -> -X* + L (X - X*). d (2 N,): scratch."""
+    states = len(graze)
     for i in range(states):
         d[i] = X[i] - side * graze[i]
     for i in range(states):
@@ -66,9 +133,12 @@ def fly_half(E, graze, side, o):
 
 
 @jit
-def jump(f, b, R, side, o, records, t, second):
-    """C1 (side +1) or C2 (side -1), on the state and the tangent vectors."""
-    q, X, graze, d, states = f.oscillator[0], o.X, f.oscillator[0].graze, o.y, 2 * len(o.c)
+def meet_stop(q, graze, b, R, side, X, second, d, p, r, slopes):
+    """Speed w of the impact of X on the right stop (side +1) or the left one (-1), and `late`, as `impact_near_graze`
+    has them; where `slopes` are wanted p and r (2 N,) are the gradients. d (2 N,): scratch."""
+    states = len(graze)
+    if not b < np.inf:
+        return 0.0, 0.0
     # seen from the right: the left stop is its mirror image
     for i in range(states):
         d[i] = side * X[i] - graze[i]
@@ -82,18 +152,24 @@ def jump(f, b, R, side, o, records, t, second):
             change = change + (q.force[i] * d[i] + q.force[i + 1] * d[i + 1])
         a += change
     w, late = impact_near_graze(a, psi, v1, second)
-    if w == 0.0:
-        return
-    # (38), (39): X -> X - (1 + R) w e^{-A late} e_v
+    if w == 0.0 or not slopes:
+        return w, late
+    for i in range(states):
+        da = q.force[i] if second else 0.0
+        d_psi, dv = 1.0 if i == 0 else 0.0, 1.0 if i == 1 else 0.0
+        dw, d_late = impact_slopes(a, psi, v1, w, late, second, da, d_psi, dv)
+        p[i], r[i] = -(1.0 + R) * dw, -(1.0 + R) * w * d_late
+    return w, late
+
+
+@jit
+def strike(q, R, side, w, late, X, c):
+    """(38), (39): X -> X - (1 + R) w e^{-A t} e_v. c (N, 3): gets e^{-A t} e_v."""
+    set_impulse(q, -late, c)
     push = -(1.0 + R) * w
-    count_impact(o, side, w)
-    log_impact(o, records, 0 if side > 0.0 else q.cells // 2, 0.0, side, side * w, X)
-    set_impulse(q, -late, o.c)
-    for m in range(len(o.c)):
-        X[2 * m] += side * push * o.c[m, 0]
-        X[2 * m + 1] += side * push * o.c[m, 1]
-    if t.wanted:
-        push_tangent(q, R, psi, a, w, v1, late, second, o, t)
+    for m in range(len(c)):
+        X[2 * m] += side * push * c[m, 0]
+        X[2 * m + 1] += side * push * c[m, 1]
 
 
 @jit
@@ -130,18 +206,9 @@ def set_impulse(q, u, c):
 
 
 @jit
-def push_tangent(q, R, psi, a, w, v1, late, second, o, t):
-    """Tangent vectors across a jump: DC = 1 + e p^T - u r^T with e = e^{-A t} e_v, u = A e.
-
-    p is the gradient of -(1 + R) w, and r that of t, times -(1 + R) w. At order 1, r = 0 and p = (1 + R) (a/w) e_x:
-    there is the singularity of the square root. Then |det DC| = 1; order 2 has R^2 at the graze, like the impact.
-    """
+def turn_vectors(q, o, t, second):
+    """Tangent vectors across a jump, with the gradients in `t.before` and `t.after`."""
     p, r, c, states = t.before, t.after, o.c, 2 * len(o.c)
-    for i in range(states):
-        da = q.force[i] if second else 0.0
-        d_psi, dv = 1.0 if i == 0 else 0.0, 1.0 if i == 1 else 0.0
-        dw, d_late = impact_slopes(a, psi, v1, w, late, second, da, d_psi, dv)
-        p[i], r[i] = -(1.0 + R) * dw, -(1.0 + R) * w * d_late
     Z, lane, back, to = t.Z, o.lane, q.from_frame, q.to_frame
     tangent_flight.apply_flight(t, tangent_flight.only(lane))
     t.mixed[lane] = 1.0
