@@ -30,6 +30,8 @@ def marked(ax):
         (f"x1\tomega\n0.5\t{18 * np.pi}\n1.0\t{22 * np.pi}\n", [9, 11], [0.5, 1.0]),
         ("\ufefffrequency,x1\n9,0.5\n\n11,\n", [9, 11], [0.5, np.nan]),
         ("frequency,x1,remark\n# upwards\n9,0.5,good\n11,1,\n", [9, 11], [0.5, 1.0]),
+        ("# measured, in May, twice\n\nfrequency,x1\n9,0.5\n11,1.0\n", [9, 11], [0.5, 1.0]),
+        ("# measured in May\n# frequency;x1\n9;0,5\n11;1\n", [9, 11], [0.5, 1.0]),
     ],
 )
 def test_points_of_a_file(data, tmp_path, text, x, y):

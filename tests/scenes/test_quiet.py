@@ -112,3 +112,31 @@ def test_units_that_are_wrong_are_seen():
 @pytest.fixture(autouse=True)
 def _folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
+
+
+def said(text):
+    """The machine lines of `check`."""
+    with open("scene.yaml", "w") as file:
+        file.write(text)
+    out = ended("check", "scene.yaml", "--quick").out
+    return out[out.index("machine") :]
+
+
+def test_what_is_said_of_branches_is_that_of_all_values_between_their_ends():
+    """A resonance lies within the range, and the free motion at both of its ends is small."""
+    text = SCENE[: SCENE.index("sweep:")].replace("0.0015", "0.02")
+    text += "continue: {from: free, parameter: {frequency: [2, 40]}}\n"
+    lines = said(text.replace("units: SI}", "units: SI, frequency: 3}"))
+    peak = np.sqrt(9500 / 2.4 - (3 / 2.4) ** 2 / 2)
+    assert f"to {1e3 * amplitude(peak):.4g} mm, gap 20 mm: touched at some" in lines
+
+
+@pytest.mark.parametrize("ends", ["start: 5000, stop: 20000", "start: 20000, stop: 5000"])
+def test_modes_of_a_machine_whose_stiffness_is_swept(ends):
+    text = SCENE.replace("frequency: {start: 5, stop: 15", f"k1: {{{ends}").replace(
+        "units: SI", "frequency: 9, units: SI"
+    )
+    lines = said(text)
+    low, high = (np.sqrt(k / 2.4) / (2 * np.pi) for k in (5000, 20000))
+    ratios = [3 / (2 * np.sqrt(2.4 * k)) for k in (20000, 5000)]
+    assert f"natural frequency {low:.4g} to {high:.4g} Hz; damping ratio {ratios[0]:.3g} to {ratios[1]:.3g}" in lines

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 FEW = 4  # modes that are named
 PLACES = 400  # values of the swept number, or points of two, at which the free motion is looked at
+DENSE = 2001  # the same along branches
+FINER = 3  # times that a peak of it is looked at more closely
 COUNTS = ("impacts_right", "impacts_left", "contacts_right", "contacts_left")
 FREE = 1e-8  # of the fastest mode: a slower one is free
 
@@ -30,12 +32,9 @@ def description(scene: "Scene | Continuation") -> list[str]:
     """At most six lines."""
     system = scene.system
     display = display_of(getattr(scene, "picture_units", ())) or AS_STORED
-    ranges = getattr(scene, "sweep", None) or {
-        key: np.array(ends) for key, ends in getattr(scene, "parameter", {}).items()
-    }
-    axes = {key: np.sort(values) for key, values in ranges.items() if key in system.described}
-    q = linears(system, {key: _some(values, len(axes)) for key, values in axes.items()})
-    lines = [_modes(system), _force(system, q), _motion(system, q, display)]
+    axes = _axes(scene)
+    q = linears(system, axes)
+    lines = [_modes(system, q), _force(system, q), _motion(system, q, display)]
     if len(axes) == 1 and not isinstance(system, FunctionModel):
         ((key, values),) = axes.items()
         bounds = float(values[0]), float(values[-1])
@@ -45,6 +44,25 @@ def description(scene: "Scene | Continuation") -> list[str]:
     if (transient := getattr(scene, "transient", None)) is not None:
         lines.append(_settling(q, max(transient, scene.settle or 0)))
     return [f"  {'' if i else 'machine':<10}{line}" for i, line in enumerate(lines)]
+
+
+def _axes(scene: "Scene | Continuation") -> dict[str, np.ndarray]:
+    """Values of what changes, rising: those of a sweep, or some of them; all along a branch, most where the free motion
+    is largest."""
+    system = scene.system
+    if ends := getattr(scene, "parameter", {}):
+        axes = {
+            key: np.linspace(*bounds, DENSE if len(ends) == 1 else math.isqrt(DENSE)) for key, bounds in ends.items()
+        }
+        for key in axes if len(axes) == 1 else ():
+            for _ in range(FINER):
+                _, size, _ = free_motion(linears(system, axes))
+                peak, values = int(np.argmax(np.nan_to_num(size, nan=0.0))), axes[key]
+                beside = values[max(peak - 1, 0)], values[min(peak + 1, len(values) - 1)]
+                axes[key] = np.union1d(values, np.linspace(*beside, PLACES))
+        return axes
+    axes = {key: np.sort(values) for key, values in scene.sweep.items() if key in system.described}
+    return {key: _some(values, len(axes)) for key, values in axes.items()}
 
 
 def _some(values: np.ndarray, axes: int) -> np.ndarray:
@@ -60,24 +78,26 @@ def _frequencies(low: float, high: float, system: Oscillator) -> str:
     return range_text(low / (2 * math.pi), high / (2 * math.pi), unit_in("Hz", system.units))
 
 
-def _modes(system: Oscillator) -> str:
+def _modes(system: Oscillator, q: Linear) -> str:
     """Natural frequencies and damping ratios, of the modes of the motion without damping."""
-    q = system.linear
     with np.errstate(all="ignore"):  # of numbers at the ends of the floats
-        size = 1 / np.sqrt(np.diag(q.M))
-        root = np.linalg.cholesky(q.M * np.outer(size, size))
-        inverse = np.linalg.inv(root) * size
-        squares, shapes = np.linalg.eigh(inverse @ q.K @ inverse.T)
+        size = 1 / np.sqrt(np.einsum("...ii->...i", q.M))
+        root = np.linalg.cholesky(q.M * size[..., :, None] * size[..., None, :])
+        inverse = np.linalg.inv(root) * size[..., None, :]
+        turned = np.swapaxes(inverse, -1, -2)
+        squares, shapes = np.linalg.eigh(inverse @ q.K @ turned)
         omega = np.sqrt(np.maximum(squares, 0))
-        damping = np.einsum("ij,ik,kj->j", shapes, inverse @ q.C @ inverse.T, shapes)
-    free = omega <= FREE * omega.max()
+        ratios = np.einsum("...ij,...ik,...kj->...j", shapes, inverse @ q.C @ turned, shapes) / (2 * omega)
+        omega, ratios = (values.reshape(-1, system.masses) for values in (omega, ratios))
+        free = (omega <= FREE * omega.max(axis=1, keepdims=True)).any(axis=0)
     sprung = np.flatnonzero(~free)
-    named = ", ".join(_frequencies(omega[i], omega[i], system) for i in sprung[:FEW])
-    ratios = ", ".join(f"{damping[i] / (2 * omega[i]):.3g}" for i in sprung[:FEW])
-    more = f" and {len(sprung) - FEW} more" if len(sprung) > FEW else ""
+    ends = [(values[:, i].min(), values[:, i].max()) for values in (omega, ratios) for i in sprung[:FEW]]
+    half, more = len(ends) // 2, f" and {len(sprung) - FEW} more" if len(sprung) > FEW else ""
+    named = ", ".join(_frequencies(low, high, system) for low, high in ends[:half])
+    damping = ", ".join(f"{low:.3g}" if low == high else f"{low:.3g} to {high:.3g}" for low, high in ends[half:])
     many, angular = "s" * (len(sprung) > 1), " (as omega)" if system.units is None else ""
     of_modes = "natural frequencies" if many else "natural frequency"
-    parts = [f"{of_modes} {named}{more}{angular}; damping ratio{many} {ratios}{more}"] if len(sprung) else []
+    parts = [f"{of_modes} {named}{more}{angular}; damping ratio{many} {damping}{more}"] if len(sprung) else []
     count = int(free.sum())
     parts += [f"{count} mode{'s' * (count > 1)} without a spring"] if count else []
     return "; ".join(parts)
@@ -134,7 +154,9 @@ def quiet_text(
 
 def quiet_line(sweep: Sweep) -> list[str]:
     """The line on where a sweep over one number of its machine is without contact, and how many orbits are there."""
-    key = sweep.keys[0] if len(sweep.keys) == 1 else ""
+    if len(sweep.keys) != 1:
+        return []
+    key = sweep.keys[0]
     if sweep.attrs.get("type") == BUILD or sweep.attrs.get("dynamics", "flow") != "flow":
         return []
     system = parse_scene(sweep.data.attrs["scene"]).system

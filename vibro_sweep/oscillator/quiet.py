@@ -4,11 +4,11 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import brentq, minimize_scalar
 
-from vibro_sweep.checks.arguments import checked_interval, checked_word, names_its_arguments
+from vibro_sweep.checks.arguments import checked_word, names_its_arguments
 from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.checks.real import array_of
+from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.oscillator.checked_numbers import range_of
 from vibro_sweep.oscillator.linear import Family, Linear, roots, stack_of
 from vibro_sweep.oscillator.oscillator import Oscillator, checked_system
@@ -17,14 +17,17 @@ from vibro_sweep.oscillator.steady import gap_responses, static_states, steady_a
 
 VALUES = 2001  # of the number, between which the sign of the room changes once at most
 BEYOND = 100.0  # times the bounds: so far a motion without contact is looked for outside of them
-TINY = 1e-13  # relative width to which an end is known
+FINER = 65  # values between two of these, at each closer look
+LOOKS = 4  # at a turning point of the room, near which it differs by the square of the distance
+TINY = 1e-13  # part of its size below which the real part of a root is rounding
 
 
 class Quiet(NamedTuple):
     """The values of a number at which a motion of period T without contact exists.
 
     ranges : of them within the bounds, rising
-    below, above : the nearest such values outside of the bounds; NaN where there is none as far as a hundred times them
+    below, above : the nearest such values up to the lower bound and from the upper one on; NaN where there is none as
+        far as a hundred times them
     attracts : whether motions without contact fade towards it; without damping none does
 
     Examples
@@ -45,8 +48,8 @@ class Quiet(NamedTuple):
 def quiet(system: Oscillator, parameter: str, bounds: tuple[float, float]) -> Quiet:
     """Where a motion without contact exists while `parameter`, a number of the system, runs through bounds = (lo, hi).
 
-    A `Quiet`: `ranges` of such values within the bounds, `below` and `above` the nearest ones outside of them, or NaN,
-    and whether such a motion `attracts` others.
+    A `Quiet`: `ranges` of such values within the bounds; `below` and `above`, the nearest ones up to the lower bound
+    and from the upper one on, or NaN; and whether such a motion `attracts` others.
 
     Raises ValueError for a name that is not a number of the system, and for bounds that are none.
 
@@ -66,8 +69,9 @@ def quiet(system: Oscillator, parameter: str, bounds: tuple[float, float]) -> Qu
     family = system.family
     parameter = checked_word("parameter", parameter, list(family.free))
     ends = array_of(bounds, 1)
-    middle = float(ends.mean()) if ends is not None and ends.shape == (2,) else family.free[parameter]
-    lo, hi = checked_interval("bounds", bounds, middle)
+    if ends is None or ends.shape != (2,) or not (np.isfinite(ends).all() and ends[0] < ends[1]):
+        raise ArgumentError(not_allowed("bounds", bounds, "(lo, hi), lo < hi"))
+    lo, hi = ends.tolist()
     allowed = range_of(system.described[parameter], system.options.get("stops", "both"))
     if not allowed.holds(np.array([lo, hi])).all():
         raise ArgumentError(f"bounds: {bounds!r} is not allowed; {parameter} must be {allowed.text}")
@@ -98,28 +102,34 @@ def _ranges(family: Family, name: str, values: np.ndarray) -> list[tuple[float, 
         left = free_motion(stack_of(family, at.shape, {name: at}))[2]
         return np.where(np.isnan(left), -np.inf, left)
 
-    def of_one(value: float) -> float:
-        return float(np.clip(room(value)[0], -1e300, 1e300))
+    def finer(low: float, high: float) -> tuple[np.ndarray, np.ndarray]:
+        at = np.linspace(low, high, FINER)
+        return at, room(at)
 
     known = room(values)
     middle, before, after = known[1:-1], known[:-2], known[2:]
-    turning = np.flatnonzero(
-        ((middle < before) & (middle <= after) & (middle > 0)) | ((middle > before) & (middle >= after) & (middle < 0))
+    down, up = (
+        (middle < before) & (middle <= after) & (middle > 0),
+        (middle > before) & (middle >= after) & (middle < 0),
     )
     more = []
-    for i in turning.tolist():  # between two values the room may vanish, or be there, for a moment
-
-        def signed(value: float, sign: float = math.copysign(1.0, known[i + 1])) -> float:
-            return sign * of_one(value)
-
-        least = float(minimize_scalar(signed, bounds=(values[i], values[i + 2]), method="bounded").x)
-        more += [least] if signed(least) < 0 else []
-    values = np.append(values, more)
-    values = np.unique(values)
-    open_ = room(values) >= 0
-    ends = [
-        float(brentq(of_one, values[i], values[i + 1], xtol=1e-300, rtol=4 * np.finfo(float).eps))
-        for i in np.flatnonzero(open_[1:] != open_[:-1])
-    ]
-    ends = [*([float(values[0])] if open_[0] else []), *ends, *([float(values[-1])] if open_[-1] else [])]
+    for i in np.flatnonzero(down | up).tolist():  # between two values the room may vanish, or be there, for a moment
+        sign, low, high = (1.0 if down[i] else -1.0), values[i], values[i + 2]
+        for _ in range(LOOKS):
+            at, left = finer(low, high)
+            least = int(np.argmin(sign * left))
+            low, high = at[max(least - 1, 0)], at[min(least + 1, FINER - 1)]
+        more += [at[least]] if sign * left[least] < 0 else []
+    values = np.unique(np.append(values, more))
+    is_open, ends = room(values) >= 0, []
+    for i in np.flatnonzero(is_open[1:] != is_open[:-1]):
+        low, high = values[i], values[i + 1]
+        while True:
+            at, left = finer(low, high)
+            after_change = max(int(np.argmax((left >= 0) != is_open[i])), 1)
+            if not at[after_change] - at[after_change - 1] < high - low:
+                break
+            low, high = at[after_change - 1], at[after_change]
+        ends.append(float(low if is_open[i] else high))
+    ends = [*([float(values[0])] if is_open[0] else []), *ends, *([float(values[-1])] if is_open[-1] else [])]
     return list(zip(ends[::2], ends[1::2], strict=True))

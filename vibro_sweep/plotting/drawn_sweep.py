@@ -83,7 +83,7 @@ class DrawnSweep:
         for key, value in at.items():
             if key not in names:
                 allowed = ", ".join(name + self.unit(name) for name in names) or "nothing, it is one point"
-                raise PlotError(f"at: {shown(key)} is not swept; allowed: {allowed}")
+                raise PlotError(f"at: {shown(key)} is no axis here; allowed: {allowed}")
             if not self.sweep[key].min() <= value <= self.sweep[key].max():
                 raise PlotError(f"at: {key} = {value:g} is not allowed; {self.extent(key)}")
         return {names.index(key): int(np.argmin(np.abs(self.sweep[key] - value))) for key, value in at.items()}

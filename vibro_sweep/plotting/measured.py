@@ -80,9 +80,10 @@ def _of_file(path: Path) -> Measured:
     if len(raw) > MOST:
         raise PlotError(f"points: {path} must be a file of {MOST:.0e} bytes at most")
     text = raw.decode("utf-8-sig", errors="replace")
-    sample = next((line for line in text.splitlines() if line.strip()), "")
+    written = _from_head_on(text.splitlines())
+    sample = next((line for line in written if line.strip()), "")
     delimiter = max(",;\t", key=sample.count)
-    reader, rows, lines = csv.reader(text.splitlines(), delimiter=delimiter), [], []
+    reader, rows, lines = csv.reader(written, delimiter=delimiter), [], []
     try:
         for row in reader:
             if any(map(str.strip, row)) and not (rows and row[0].lstrip().startswith("#")):
@@ -108,6 +109,16 @@ def _of_file(path: Path) -> Measured:
                     wrong.setdefault(names[j], f", line {lines[i + 1]}: {cut(word)}")
     known = {name: unit for name, unit in zip(names, units, strict=True) if unit}
     return _checked(str(path), dict(zip(names, numbers.T, strict=True)), known, wrong)
+
+
+def _from_head_on(lines: list[str]) -> list[str]:
+    """The lines, those empty that stand before the names of columns: these are the first line without #, or the last
+    one with it above numbers."""
+    filled = [i for i, line in enumerate(lines) if line.strip()]
+    without = next((n for n, i in enumerate(filled) if not lines[i].lstrip().startswith("#")), len(filled))
+    numbers = without < len(filled) and re.match(r"\s*[-+.,\d]", lines[filled[without]])
+    head = filled[without - 1 if numbers and without else without] if without < len(filled) else 0
+    return ["" if i < head else line for i, line in enumerate(lines)]
 
 
 def _name_and_unit(head: str) -> tuple[str, str]:

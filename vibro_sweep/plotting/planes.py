@@ -39,6 +39,7 @@ from vibro_sweep.tables.observables import VARIABLES
 _OF_A_POINT = {row.name: row.label for row in VARIABLES if not row.dimensions}
 
 QUIET, UNSETTLED = "#ffffff", "#ffd166"
+FEW = 40  # columns of a plane, at which curves have dots
 CURVES = {"b_star": DASHES, "b_right": DASHES, "b_left": ":"}
 
 
@@ -168,8 +169,10 @@ def _grazing_curve(ax, result):
     order = np.argsort(result.sweep[other_key])
     frame = ax.get_xlim(), ax.get_ylim()
     for name, curve in result.grazing(other_key).items():
+        dots = {"marker": ".", "ms": 4} if len(order) < FEW else {}  # between them the line is straight
         line = result.sweep[other_key][order], np.ones(len(order)) if result.options.relative else curve[order]
-        for style in ({"color": "white", "lw": 2.2}, {"color": INK, "lw": 1.0, "ls": CURVES[name], "gid": "grazing"}):
+        dashes = {"color": INK, "lw": 1.0, "ls": CURVES[name], "gid": "grazing"} | dots
+        for style in ({"color": "white", "lw": 2.2}, dashes):
             ax.plot(*(line if keys[1] == "b" else line[::-1]), label=grazing_of(name), **style)
     ax.set(xlim=frame[0], ylim=frame[1])
 

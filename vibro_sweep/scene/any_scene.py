@@ -89,7 +89,7 @@ def parsed(text: str, name: str, source: Path | None, scene_of: Callable[[object
         data = read_yaml(text)
         if isinstance(data, dict) and isinstance(data.get("system"), str) and source is not None:
             other = (Path() if source.parent == Path("/dev") else source.parent) / data["system"]  # of /dev/stdin
-            data = data | {"system": _system_in(other)}
+            data = data | {"system": _system_in(other, data["system"])}
         scene = scene_of(data, name)
     except YAMLTextError as error:
         raise SceneError(name, [str(error)]) from None
@@ -99,8 +99,8 @@ def parsed(text: str, name: str, source: Path | None, scene_of: Callable[[object
     return scene._with_origin(as_written=None if other else text, source=source, system_file=other)
 
 
-def _system_in(path: Path) -> object:
-    """The `system` of another scene's file. Raises SceneError."""
+def _system_in(path: Path, written: str) -> object:
+    """The `system` of another scene's file, whose name is written so. Raises SceneError."""
     try:
         data = read_yaml(path.read_text(encoding="utf-8-sig"))
     except (OSError, UnicodeDecodeError, YAMLTextError) as error:
@@ -108,10 +108,8 @@ def _system_in(path: Path) -> object:
             "it is no text" if isinstance(error, UnicodeDecodeError) else getattr(error, "strerror", None) or str(error)
         )
         text = f"that file cannot be read: {why}; it must be another scene"
-        raise SceneError(path.name, [problem("system", path.name, text)]) from None
+        raise SceneError(path.name, [problem("system", written, text)]) from None
     system = data.get("system") if isinstance(data, dict) else None
     if not isinstance(system, dict):
-        raise SceneError(
-            path.name, [problem("system", path.name, "that file must be a scene with a system of its own")]
-        )
+        raise SceneError(path.name, [problem("system", written, "that file must be a scene with a system of its own")])
     return system

@@ -82,10 +82,11 @@ def form_problems(error: ValidationError, form: type[Form], data: object = None)
     items = error.errors()
     unknown = {item["loc"]: item for item in items if item["type"] == "extra_forbidden"}
     instead = {(*loc[:-1], meant(loc[-1], _place(loc, form)[0].model_fields)) for loc in unknown}
+    begins = {loc for loc in unknown if len(loc) == 1 and meant(loc[0], _top_keys(form)) == "continue"}
     physical = [loc for loc in unknown if loc[0] == "system" and loc[-1] in slips.PHYSICAL]
     lines = []
     for item in items:
-        if item["type"] == "missing" and item["loc"] in instead:
+        if item["type"] == "missing" and (item["loc"] in instead or (begins and item["loc"] == ("orbit",))):
             continue  # the unknown key says it
         if len(physical) > 1 and item["loc"] in physical:
             names = ", ".join(str(loc[-1]) for loc in physical)
@@ -106,11 +107,13 @@ def _line(item, form, data) -> str:
         alone = f"; {slips.ONE_MASS}" if path == "system.physical.M2" else ""
         return f"{path}: missing; {'step or num' if needs_two else 'it'} must be given{alone}"
     if kind == "extra_forbidden":
-        return problem(path, entry, _unknown(item["loc"], keys, entry, data))
+        is_begin = len(item["loc"]) == 1 and meant(item["loc"][0], _top_keys(form)) == "continue"
+        known = _top_keys(form) if is_begin else keys
+        return problem(path, entry, _unknown(item["loc"], known, entry, data))
     if kind == "literal_error":
         words = [word.strip("'") for word in ctx["expected"].replace(" or ", ", ").split(", ")]
         words = [{"True": "true", "False": "false"}.get(word, word) for word in words]
-        also = " or a number (radians)" if "tau as a word" in item["loc"] else ""
+        also = ", a number (radians), cos, or a text such as pi/2" if "tau as a word" in item["loc"] else ""
         hint = slips.other_form(path, entry) or (slips.number_in_text(entry) if also else None)
         return problem(path, entry, f"{did_you_mean(entry, words)}allowed: {', '.join(words)}{also}{_and(hint)}")
     if kind == "model_type":
@@ -121,6 +124,7 @@ def _line(item, form, data) -> str:
         "float_type": "must be a number in the range of the floats" if beyond else "must be a number",
         "int_type": "must be a whole number",
         "finite_number": "must be a finite number",
+        "dict_type": "must be a mapping",
         "list_type": f"must be a list of {'names' if path.endswith('units') else 'numbers'}",
         "tuple_type": "must be a list of words",
         "string_type": "must be a text",
@@ -129,7 +133,7 @@ def _line(item, form, data) -> str:
         "greater_than_equal": f"must be a whole number >= {ctx.get('ge')}",
         "less_than_equal": f"must be a whole number <= {ctx.get('le')}",
     }.get(kind, item["msg"])
-    if kind in ("frozen_set_type", "list_type"):
+    if kind in ("frozen_set_type", "list_type", "tuple_type", "dict_type"):
         text += _and(slips.other_form(path, entry, OBSERVATIONS))
     text += _and(slips.of_list(path, entry))
     is_text = isinstance(entry, str) and kind in ("float_type", "int_type")
@@ -156,6 +160,12 @@ def _unknown(loc, keys: list[str], entry, data) -> str:
     if "Omega" in keys and (hint := slips.of_frequency(key, entry)):
         return f"unknown key; {hint}"
     return f"unknown key; {did_you_mean(key, keys)}allowed here: {', '.join(keys)}"
+
+
+def _top_keys(form) -> list[str]:
+    """The keys of a scene: also that of one of another kind."""
+    keys = list(form.model_fields)
+    return [*keys, "continue"] if "continue" not in keys else keys
 
 
 def _and(hint: str | None) -> str:

@@ -11,6 +11,8 @@ from vibro_sweep.checks.meant import meant
 from vibro_sweep.checks.real import number_of
 from vibro_sweep.oscillator.models import DEFAULT, MODELS
 from vibro_sweep.oscillator.other_words import OTHER_WORDS
+from vibro_sweep.tables.observables import ALONG_BRANCHES
+from vibro_sweep.tables.parameters import CYCLES
 
 PHYSICAL = ("M1", "M2", "K1", "K2", "C1", "C2", "P1", "P2", "Omega", "B", "B0")
 NONDIMENSIONAL = (
@@ -75,6 +77,12 @@ def other_form(path: str, value: object, words: Iterable[str] = ()) -> str | Non
         sides = [side for side in ("left", "right") if side in list(value)]
         which = sides[0] if len(sides) == 1 else "both"
         return f"write stops: {which}; where the stops stand is said by b"
+    if path == "start.box":
+        return "write box: {x1: [-1, 1]}"
+    if path.startswith("start.box."):
+        return f"write {key}: [-1, 1]"
+    if path == "continue.observe":
+        return f"write observe: [{', '.join(ALONG_BRANCHES)}]"
     if path == "sweep":
         name = value if isinstance(value, str) else next(iter(value), "b") if isinstance(value, list) else "b"
         return f"write sweep: {{{name if str(name).isidentifier() else 'b'}: {AXIS}}}"
@@ -160,12 +168,13 @@ def of_physical(key: str, system: object) -> str | None:
     return f"nondimensional numbers are swept: {NONDIMENSIONAL}"
 
 
+CYCLES_ARE = "cycles per unit of time, Hz where that is the second"
 HERTZ = ("f", "freq", "hz")
 
 
 def of_frequency(key: str, value: object) -> str | None:
     """The hint for a frequency among physical quantities; None for another key."""
-    hertz = number_of(value) if key.lower() in HERTZ else None
+    hertz = number_of(value) if key.lower() in HERTZ and key != "F" else None
     if hertz is None:
         return None
     return f"if it is in Hz write Omega: {2 * math.pi * hertz:.10g}, which is 2 pi times as much"
@@ -173,20 +182,17 @@ def of_frequency(key: str, value: object) -> str | None:
 
 def of_swept_frequency(key: str, value: object, system: object) -> str | None:
     """The hint for a sweep in Hz of a system in physical units; None for another key or system."""
-    unit = _radian_per_second(system) if isinstance(system, Mapping) and key.lower() in HERTZ else None
+    if not isinstance(system, Mapping) or key.lower() not in HERTZ or key == "F":
+        return None
+    if not isinstance(numbers := system.get("physical"), Mapping):
+        return None if system.get("units") is None else f"write {CYCLES.name}, in {CYCLES_ARE}"
+    unit = _scales(numbers).get("Omega", (None, None, None))[2]
     if not unit:
         return None
     counted = "in rad/s" if unit == 1 else f"here in units of {1 / unit:.6g} rad/s"
     first = number_of(value.get("start")) if isinstance(value, Mapping) else None
     hertz = 20.0 if first is None or not math.isfinite(first) else first
     return f"omega is swept, {counted}: {hertz:g} Hz is omega = {2 * math.pi * unit * hertz:.6g}"
-
-
-def _radian_per_second(system: Mapping[str, Any]) -> float | None:
-    """1 rad/s in the unit of omega; None where the system has no units."""
-    if isinstance(numbers := system.get("physical"), Mapping):
-        return _scales(numbers).get("Omega", (None, None, None))[2]
-    return 1.0 if system.get("units") == "SI" else None
 
 
 ONE_MASS = "one mass is one_mass, or a chain of one, as `vibro-sweep new one_mass_si` writes it"

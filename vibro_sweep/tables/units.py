@@ -250,7 +250,9 @@ def why_no_display(value: object) -> str:
     for name in names if isinstance(names, (list, tuple)) else ():
         unit = named_unit(name.strip()) if isinstance(name, str) else None
         if isinstance(name, str) and "rad" in name:
-            return f"{name.strip()[:LONGEST]}: omega is in radians unless Hz is named; leave it out"
+            return (
+                f"{name.strip()[:LONGEST]}: angles have none to name; an axis over omega has rad where no Hz is named"
+            )
         if unit is None:
             return f"{str(name)[:LONGEST]} is no unit here; known are {NAMES}"
         if unit.word in known:

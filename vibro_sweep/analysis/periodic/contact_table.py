@@ -18,6 +18,7 @@ def contacts_between(q: Linear, begins, lengths, sides, starts) -> np.ndarray:
     for one, length, start in zip(result, lengths, starts, strict=True):
         contact = _Contact(q, int(one["side"]), float(one["t_touch"]), start)
         (depth, speed, force, _) = contact.at(np.linspace(0.0, length, SAMPLES))
+        force = np.maximum(force, 0.0)  # at a graze it is rounding
         one["v_touch"], one["v_release"] = speed[0], speed[-1]
         one["max_penetration"], one["max_force"] = depth.max(), force.max()
         for name, value, slope in (("max_penetration", 0, 1), ("max_force", 2, 3)):

@@ -123,7 +123,7 @@ MODEL = Model(
 """,
     source="docs/how/models.md",
     numbers=(
-        _list("force", "f", "force", "amplitude of the force with sin(omega t + tau)", units="N"),
+        _list("force", "F", "force", "amplitude of the force with sin(omega t + tau)", units="N"),
         _list("force_cos", r"\tilde f", "force (cos)", "amplitude of the force with cos(omega t + tau)", units="N"),
         _list("constant", r"\bar f", "constant force", "constant force", units="N"),
         Parameter(

@@ -76,7 +76,7 @@ MODEL = Model(
         _list("m", "m", "kg", POSITIVE, "mass", "mass", "mass"),
         _list("k", "k", "N m-1", NOT_NEGATIVE, "spring", "stiffness", "stiffness, from the left wall on; 0: no spring"),
         _list("c", "c", "N s m-1", NOT_NEGATIVE, "spring", "damper", "damping, from the left wall on", 0.0),
-        _list("force", "f", "N", NUMBER, "mass", "force", "amplitude of the force"),
+        _list("force", "F", "N", NUMBER, "mass", "force", "amplitude of the force"),
         _list("constant", r"\bar f", "N", NUMBER, "mass", "constant force", "constant force", 0.0),
         *CONTACT,
     ),
