@@ -181,7 +181,7 @@ def test_a_number_that_breaks_the_symmetry(tmp_path):
 def test_options_that_the_picture_of_an_orbit_does_not_have_are_refused(orbit, tmp_path):
     for option in ({"output": tmp_path / "o.png"}, {"xlim": (0, 1)}, {"relative": True}):
         with pytest.raises(
-            vs.PlotError, match=f"^{next(iter(option))}: of an orbit `width` and `kind` are the only options"
+            vs.PlotError, match=f"^{next(iter(option))}: of an orbit `width`, `kind` and `units` are the only"
         ):
             vs.plot(orbit, **option)
     with pytest.raises(ValueError, match=r"^kind: "):

@@ -234,3 +234,22 @@ def test_limits_of_a_frequency_are_said_in_hertz_too():
         vs.plot(data, xlim=(1, 2))
     with pytest.raises(vs.PlotError, match=r"'Hz' is not swept; allowed: omega \[rad/s\]"):
         vs.plot(data, "iteration", at={"Hz": 1})
+
+
+def test_orbits_in_other_units():
+    """Whatever the system has: numbers, names of axes and the title; the force and its law as well."""
+    soft = dict(stop_right=1.5e-3, contact_normal=1, k_stop=1.8e5, c_stop=45)
+    lever = vs.Oscillator(2.4, 9500, 3, force=40, frequency=10, units="SI", **soft)
+    orbit = vs.simulate(lever, None, 60)
+    one, other = orbit.plot(kind="contact-force"), vs.plot(orbit, kind="contact-force", units="mm, ms, kN")
+    assert [ax.get_xlabel() for ax in other.axes] == ["time $t$ [ms]", "$x_1$ [mm]"]
+    assert other.axes[0].get_ylabel() == "force of the stop [kN]" and "b = 1.5 mm" in other.get_suptitle()
+    for before, after, across, up in zip(one.axes, other.axes, (1e3, 1e3), (1e-3, 1e-3), strict=True):
+        for line, scaled in zip(before.lines, after.lines, strict=True):
+            if line.get_label().endswith("stop") and len(line.get_xdata()) > 2:
+                np.testing.assert_allclose(scaled.get_xdata(), across * np.asarray(line.get_xdata()), rtol=1e-12)
+                np.testing.assert_allclose(scaled.get_ydata(), up * np.asarray(line.get_ydata()), rtol=1e-9, atol=1e-12)
+    portrait = vs.periodic_orbit(lever, itinerary="R").plot(units="mm, ms").axes[0]
+    assert (portrait.get_xlabel(), portrait.get_ylabel()) == ("gap [mm]", "gap velocity [mm/ms]")
+    with pytest.raises(ValueError, match="units: 'mm' is not allowed; it must be left out"):
+        vs.simulate(lever.replace(units=None), None, 5).plot(units="mm")

@@ -71,12 +71,12 @@ def plot(
     overwrite: bool = False,
 ) -> Figure | Axes:
     """A picture of a file, of a Dataset of `vibro_sweep.open` or `vibro_sweep.sweep`, or of a result: an orbit, a
-    branch, a curve or windows; a matplotlib Figure. Of an orbit `width` is an option, and `kind` "contact-force".
+    branch, a curve or windows; a matplotlib Figure. Of an orbit `width`, `units` and `kind` are options.
 
     A notebook shows it as the value of a cell. Where `ax` is given, that is returned.
     Options have the names that they have on the command line.
 
-    kind : by default the first that the data can show
+    kind : by default the first that the data can show; of an orbit "contact-force"
     ax : axes to draw into, by default those of a new Figure. Of a bifurcation diagram or a plane they show the first
         panel; other kinds must have one, which `at` chooses where each orbit has its own
     at : where single orbits are drawn, as {"b": 6.6}: the nearest point; by default some, evenly spread
@@ -108,7 +108,6 @@ def plot(
     if is_result(data) and hasattr(data, "sample"):  # an orbit, whose motion is computed as it is drawn
         refused = {"ax": ax, "at": at, "variable": variable, "xlim": xlim, "ylim": ylim, "size": size}
         refused |= {
-            "units": units,
             "points": points,
             "dpi": dpi,
             "windows": windows,
@@ -118,10 +117,12 @@ def plot(
         }
         for name, value in refused.items():
             if value is not None:
-                raise PlotError(f"{name}: of an orbit `width` and `kind` are the only options; the Figure has more")
+                raise PlotError(
+                    f"{name}: of an orbit `width`, `kind` and `units` are the only options; the Figure has more"
+                )
         if getattr(data, "_solution", data) is None:
             raise PlotError(not_allowed("data", data, "an orbit that has a motion: this one was not found"))
-        return data.plot(width=width, kind=kind)
+        return data.plot(width=width, kind=kind, units=units)
     check_type("kind", kind, (str, NoneType), "the name of a kind of picture, or None")
     if ax is not None and not isinstance(ax, Axes):
         raise ArgumentTypeError(not_allowed("ax", ax, "matplotlib axes"))

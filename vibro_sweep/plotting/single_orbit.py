@@ -1,19 +1,21 @@
 """Pictures of one orbit: phase portrait of the gap and its time history, or forces of its stops."""
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from vibro_sweep.plotting import drawn_motion, sticking_marks
 from vibro_sweep.plotting.figure import Panels
-from vibro_sweep.plotting.style import DASHES, FAINT, INK, LEFT, RIGHT, with_unit
+from vibro_sweep.plotting.style import DASHES, FAINT, INK, LEFT, RIGHT
 from vibro_sweep.results.motion import Motion
 
+Units = Mapping[str, str]  # of what is declared in SI, as the name of an axis has them
 STOPS = {1: "right stop", -1: "left stop"}
 
 
-def portrait_and_history(motion: Motion, title: str, system, names=("gap", "gap velocity")) -> Panels:
-    """system : whose units the axes have; names : of the gap and its velocity"""
-    declared = ("m", "m s-1", "s")
-    x_label, v_label, t_label = map(with_unit, (*names, "time $t$"), declared, 3 * [system])
+def portrait_and_history(motion: Motion, title: str, units: Units, names=("gap", "gap velocity")) -> Panels:
+    """units : of lengths, velocities and times; names : of the gap and its velocity"""
+    x_label, v_label, t_label = names[0] + units["m"], names[1] + units["m s-1"], "time $t$" + units["s"]
     gap, rate = motion.names
 
     def draw(axes):
@@ -39,11 +41,9 @@ def portrait_and_history(motion: Motion, title: str, system, names=("gap", "gap 
     return Panels(title, 3.7, draw, columns=2, grid={"width_ratios": (1, 1.4)})
 
 
-def forces(motion: Motion, title: str, system, names=("gap", "gap velocity")) -> Panels:
+def forces(motion: Motion, title: str, units: Units, names=("gap", "gap velocity")) -> Panels:
     """The force of the compliant stops over time, and against the gap."""
-    t_label, x_label, label = (
-        with_unit(text, unit, system) for text, unit in (("time $t$", "s"), (names[0], "m"), ("force of the stop", "N"))
-    )
+    t_label, x_label, label = "time $t$" + units["s"], names[0] + units["m"], "force of the stop" + units["N"]
 
     def draw(axes):
         over_time, loop = axes[0]

@@ -41,6 +41,18 @@ class Motion:
         gap, rate = (self[name] for name in self.names)
         return np.isin(gap, list(self.stops.values())) & (rate == 0)
 
+    def scaled(self, length: float, velocity: float, time: float, force: float) -> "Motion":
+        """The same motion in other units: what its numbers are multiplied by."""
+        of = {"x": length, "v": velocity}
+        states = {
+            name: values * (velocity if name == "gap_velocity" else of.get(name[0], length))
+            for name, values in self.states.items()
+        }
+        laws = {side: (k * force / length, c * force / velocity, p * force) for side, (k, c, p) in self.laws.items()}
+        stops = {side: stop * length for side, stop in self.stops.items()}
+        impacts = self.impacts * np.array([time, 1.0, velocity, velocity])
+        return replace(self, t=self.t * time, states=states, impacts=impacts, stops=stops, laws=laws)
+
     def joined(self) -> "Motion":
         """Without the gaps in the jumps: positions go on through an impact, and velocities that it does not change."""
         there = np.isfinite(self["x1"])

@@ -1,6 +1,7 @@
 """A periodic orbit: impacts, itinerary, multipliers, stability, certified distance from the stops."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -267,17 +268,18 @@ class PeriodicOrbit(Result):
     def _table(self) -> dict[str, list]:
         return event_table(self)
 
-    def plot(self, width: float | None = None, kind: str | None = None):
+    def plot(self, width: float | None = None, kind: str | None = None, units: str | Sequence[str] | None = None):
         """Phase portrait of the gap and its time history, impacts and contacts marked: a Figure, `width` mm wide.
 
         kind : "contact-force" for the force of the compliant stops over time and against the gap
+        units : names of units in which numbers are shown, whatever the system has, as "mm, ms"
         """
         q = self._solution.family.linear if self._solution is not None else None
         if q is None:
             raise ArgumentError(f"this orbit has no motion: {named(ORBITS, self.status).text}")
         title = f"{self.itinerary or 'free'}, period {self.period}, {'stable' if self.stable else 'unstable'}"
         motion = motion_of(self, q, 0.0, self.period * forcing_period(q), repeats=True)
-        return orbit_figure(motion, kind, title, self.system, ("gap", "gap velocity"), width)
+        return orbit_figure(motion, kind, title, self.system, ("gap", "gap velocity"), width, units)
 
     def save(self, path) -> Path:
         """Write the orbit as JSON, for `vibro_sweep.load`; nothing is overwritten."""

@@ -7,15 +7,18 @@ import numpy as np
 
 from vibro_sweep.analysis.single.result import shows_force
 from vibro_sweep.checks.errors import ArgumentError
+from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.oscillator.linear import Linear, forcing_period
 from vibro_sweep.results.motion import Motion, with_jumps
 from vibro_sweep.tables.coordinates import state
+from vibro_sweep.tables.units import AS_STORED, shown_unit, unit_in
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 SAMPLES = 400  # in a forcing period
 IN_CONTACT = 65  # in a contact, besides; the first and the last one
+DECLARED = ("m", "m s-1", "s", "N")  # of lengths, velocities, times and forces
 EDGE = 1e-6  # of its length within it: at the touch itself rounding says on which side of the stop the mass is
 
 
@@ -60,14 +63,25 @@ def sampled(orbit: Any, q: Linear, times: np.ndarray) -> Motion:
     return Motion(times, 1.0, states, np.zeros((0, 4)), stops, laws, bool(q.by_force))
 
 
-def orbit_figure(motion: Motion, kind: str | None, title: str, system: Any, names, width: float | None) -> "Figure":
-    """The picture of an orbit that `kind` asks for. Raises ArgumentError for another word, and for forces of rigid
-    stops."""
+def orbit_figure(
+    motion: Motion, kind: str | None, title: str, system: Any, names, width: float | None, units: Any
+) -> "Figure":
+    """The picture of an orbit that `kind` asks for, in these units.
+
+    Raises ArgumentError for another word, for forces of rigid stops, and for units of a system that has none; PlotError
+    for names that are no units.
+    """
     from vibro_sweep.plotting.plot_options import PlotOptions
     from vibro_sweep.plotting.single_orbit import forces, portrait_and_history
 
     of_force = shows_force(kind)
     if of_force and not motion.laws:
         raise ArgumentError('kind "contact-force": the stops of this orbit are rigid')
-    panels = (forces if of_force else portrait_and_history)(motion, title, system, names)
-    return PlotOptions(width=width).draw(panels)[0].figure
+    options = PlotOptions(width=width, units=units)
+    of_system = getattr(system, "units", None)
+    if units is not None and of_system is None:
+        raise ArgumentError(not_allowed("units", units, "left out: the system has no units"))
+    shown = {declared: (options.display or AS_STORED).of(unit_in(declared, of_system)) for declared in DECLARED}
+    labels = {declared: shown_unit(unit) for declared, (_, unit) in shown.items()}
+    motion = motion.scaled(*(factor for factor, _ in shown.values()))
+    return options.draw((forces if of_force else portrait_and_history)(motion, title, labels, names))[0].figure

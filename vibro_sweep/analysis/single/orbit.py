@@ -3,6 +3,7 @@
 from __future__ import annotations  # help() says ArrayLike, and not all that this may be
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -27,6 +28,7 @@ from vibro_sweep.oscillator.oscillator import Oscillator, checked_system
 from vibro_sweep.oscillator.own_time import rate_of, with_velocities
 from vibro_sweep.tables.coordinates import checked_state
 from vibro_sweep.tables.outcomes import OK, status_of
+from vibro_sweep.tables.units import AS_STORED, display_of, unit_in, unit_text
 
 if TYPE_CHECKING:
     import xarray
@@ -129,16 +131,27 @@ class Orbit(Result):
     def _table(self) -> dict[str, list]:
         return event_table(self)
 
-    def plot(self, periods: int = 4, width: float | None = None, kind: str | None = None) -> Figure:
+    def plot(
+        self,
+        periods: int = 4,
+        width: float | None = None,
+        kind: str | None = None,
+        units: str | Sequence[str] | None = None,
+    ) -> Figure:
         """Phase portrait and time history of the last forcing periods, impacts marked; so many mm wide.
 
         kind : "contact-force" for the force of the compliant stops over time and against the gap
+        units : names of units in which numbers are shown, whatever the system has, as "mm, ms"
         Raises ValueError where `periods` is not a whole number >= 1, or nothing is simulated.
         """
         (begin, end), q = self._last(checked_count("periods", periods, 1)), self.system.linear
         names = ("$x_1$", "$v_1$") if self.system.gap_is_x1 else ("$g$", r"$\dot g$")
-        title = f"{begin:.6g} < t < {end:.6g}, b = {self.system.b:.6g}"
-        return orbit_figure(motion_of(self, q, begin, end), kind, title, self.system, names, width)
+        display = display_of(units) or AS_STORED  # a wrong one is refused below
+        t, t_unit = display.of(unit_in("s", self.system.units))
+        length, b_unit = display.of(unit_in("m", self.system.units))
+        t_text = f"{begin * t:.6g} < t < {end * t:.6g} {unit_text(t_unit)}".rstrip()
+        title = f"{t_text}, b = {self.system.b * length:.6g} {unit_text(b_unit)}".rstrip()
+        return orbit_figure(motion_of(self, q, begin, end), kind, title, self.system, names, width, units)
 
     def animate(self, periods: int = 8) -> FuncAnimation:
         """A film of the last forcing periods: masses between stops, time history and phase portrait in step.
