@@ -51,12 +51,12 @@ def test_one_branch_that_fails_loses_no_other(monkeypatch):
     orbit, count = vs.periodic_orbit(PAPER, itinerary="LR"), 0
     whole = vs.follow_branches(orbit, "b", BOUNDS)
 
-    def second_fails(*args):
+    def second_fails(*args, **more):
         nonlocal count
         count += 1
         if count == 2:
             raise ValueError("orbit: it is a special point")
-        return vs.continue_orbit(*args)
+        return vs.continue_orbit(*args, **more)
 
     monkeypatch.setattr(branch_search, "continue_orbit", second_fails)
     found = vs.follow_branches(orbit, "b", BOUNDS)

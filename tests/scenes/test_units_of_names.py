@@ -129,7 +129,7 @@ def test_what_is_shown_has_the_units_of_the_scene(folder):
     figure = vs.plot(folder / "lever.h5")
     assert figure.axes[0].get_ylabel() == "$x_1$ at $t = 0$ mod $T$ [mm]"
     assert figure.axes[-1].get_xlabel() == "forcing frequency $f$ [Hz]"
-    assert "$b = 1.5$ mm" in figure.get_suptitle() and "$f = 40$ N" in figure.get_suptitle()
+    assert "$b = 1.5$ mm" in figure.get_suptitle() and "$F = 40$ N" in figure.get_suptitle()
     dots = np.concatenate([line.get_ydata() for line in figure.axes[0].lines if line.get_marker() == "."])
     known = stored.x1.values[np.isfinite(stored.x1.values)]
     assert np.allclose(sorted({*dots}), sorted({*(1000 * known)}), rtol=1e-14)
