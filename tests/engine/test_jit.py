@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
-from support import path_with
+from support import path_with, small_kernel
 from support.scene_texts import parsed
 
 from vibro_sweep.driver import blocks, code_hash, compute
@@ -23,8 +23,9 @@ start: {random: 3, seed: 1}
 orbit: {transient: 2, record: 4}  # too short for chaos to enlarge what rounding does
 observe: [section, lyapunov, impacts, attractors]
 """
-BROKEN = "from vibro_sweep.engine.simd import compiler; compiler._Whole.add_linking_library = None;"
-PLAIN = "import sys;" + BROKEN + "import test_jit; test_jit.save(sys.argv[1])"
+UNTESTED = "import numba; numba.version_info = numba.version_info._replace(short=(0, 99));"
+PLAIN = UNTESTED + "import sys, test_jit; test_jit.save(sys.argv[1])"
+HERE = Path(__file__).parent
 
 
 def arrays():
@@ -38,7 +39,6 @@ def save(path):
 
 
 known = pytest.mark.skipif(not jit.IS_TESTED, reason="this numba compiles kernel by kernel, which takes longer")
-UNTESTED = "import numba; numba.version_info = numba.version_info._replace(short=(0, 99));"
 
 
 def test_this_numba_is_known():
@@ -63,31 +63,17 @@ def test_a_compilation_within_another_one_leaves_it_lean():
     assert PostProcessor.run is own
 
 
-@pytest.mark.slow
 @known
-@pytest.mark.parametrize("change, outcome", [("", "yes"), (BROKEN, "no")])
-def test_a_small_kernel_tells_whether_numba_is_as_expected_inside(change, outcome, tmp_path):
-    def start():
-        program = change + "from vibro_sweep.engine.simd import jit; print(jit.AS_ONE)"
-        environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path)}
-        done = subprocess.run(
-            [sys.executable, "-c", program], env=environment, check=True, capture_output=True, text=True
-        )
-        return done.stdout.strip()
-
-    assert start() == str(outcome == "yes")
-    [kept] = tmp_path.rglob("compiles-as-one-*")
-    assert kept.read_text() == outcome
-    kept.write_text("no")
-    assert start() == "False"  # what is kept is not tried again
+def test_a_small_kernel_with_all_that_large_ones_use():
+    assert small_kernel.works(jit._compiled(small_kernel.kernel, jit.WholeCompiler))
 
 
 @pytest.mark.slow
 def test_an_untested_numba_compiles_plainly_and_says_so(tmp_path):
     program = UNTESTED + "import logging; logging.basicConfig(level=logging.INFO);"
-    program += "import numpy as np; from vibro_sweep.engine.simd import jit, self_test;"
-    program += "k = jit.exported(self_test.kernel); print(self_test.works(k), jit.AS_ONE, jit.IS_TESTED)"
-    environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path)}
+    program += "from support import small_kernel; from vibro_sweep.engine.simd import jit;"
+    program += "k = jit.exported(small_kernel.kernel); print(small_kernel.works(k), jit.AS_ONE, jit.IS_TESTED)"
+    environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path), "PYTHONPATH": path_with(HERE.parent)}
     done = subprocess.run([sys.executable, "-c", program], env=environment, check=True, capture_output=True, text=True)
     assert done.stdout.split() == ["True", "False", "False"]
     assert done.stderr.count("as long: tried were 0.62") == 1
@@ -96,7 +82,7 @@ def test_an_untested_numba_compiles_plainly_and_says_so(tmp_path):
 @known
 @pytest.mark.slow
 def test_numba_by_itself_gives_the_same_numbers_but_for_rounding(tmp_path):
-    environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path), "PYTHONPATH": path_with(Path(__file__).parent)}
+    environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path), "PYTHONPATH": path_with(HERE)}
     subprocess.run([sys.executable, "-c", PLAIN, tmp_path / "plain.npz"], env=environment, check=True)
     plain, whole = np.load(tmp_path / "plain.npz"), arrays()
     assert set(plain) == set(whole) | {"code_hash"}

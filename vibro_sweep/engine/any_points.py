@@ -25,7 +25,7 @@ from vibro_sweep.engine.records import Kind, point_of
 from vibro_sweep.engine.tables import cells
 from vibro_sweep.engine.tables.flight import WIDTH
 from vibro_sweep.oscillator.linear import MOTION, Linear, grazing_state, selected
-from vibro_sweep.oscillator.stacks import dot
+from vibro_sweep.oscillator.stacks import different, dot
 from vibro_sweep.oscillator.steady import gap_responses, steady_amplitudes
 
 APART = 8.0  # a rate over that of the force from which on tables are computed in twice the digits
@@ -45,8 +45,8 @@ def any_points(q: Linear, kind: Kind, frames: bool = True) -> np.ndarray:
     """Points of a stack of oscillators, tau resolved, of its shape. frames: whether tangent vectors are wanted."""
     shape, origin = q.omega.shape, origin_of(q)
     q, origin = _flat(q), origin.reshape(-1, origin.shape[-1])
-    different, place = _different(np.concatenate([_row(getattr(q, name)) for name in MOTION] + [origin], -1))
-    known = _points(selected(q, different), kind, frames)
+    unlike, place = different(np.concatenate([_row(getattr(q, name)) for name in MOTION] + [origin], -1))
+    known = _points(selected(q, unlike), kind, frames)
     result = known[place]
     low, high = (distance(q, origin, gap) for gap in (q.low, q.high))
     result["stops"] = np.stack([low, high, q.R_low, q.R_high], -1)
@@ -63,13 +63,6 @@ def _flat(q: Linear) -> Linear:
 
 def _row(values: np.ndarray) -> np.ndarray:
     return values.reshape(len(values), -1)
-
-
-def _different(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """One index of each different row of bits, and to which of these each row belongs."""
-    as_bytes = np.ascontiguousarray(rows, float).view(f"V{rows.shape[-1] * 8}")[:, 0]
-    _, first, place = np.unique(as_bytes, return_index=True, return_inverse=True)
-    return first, place
 
 
 def _set_contact(points: np.ndarray, q: Linear) -> None:
@@ -112,10 +105,12 @@ def _points(q: Linear, kind: Kind, frames: bool) -> np.ndarray:
     for name in ("P", "back", "origin", "turned", "stiffness", "damping", "force", "constrained", "push"):
         points[name] = getattr(contact, name)
     points["divergence"] = -np.trace(contact.damping, axis1=-2, axis2=-1)
-    points["rate"] = fastest_rate(contact.stiffness, contact.damping)
+    # without forces many move alike: those that differ in omega alone
+    unlike, of = different(np.concatenate([_row(one) for one in (q.M, q.K, q.C, q.normal, contact.P)], -1))
+    points["rate"] = fastest_rate(contact.stiffness[unlike], contact.damping[unlike])[of]
     n = kind.masses
-    held, damped = contact.constrained[..., 1:, 1:n], contact.constrained[..., 1:, n + 1 : 2 * n]
-    points["constrained_rate"] = fastest_rate(-held, -damped)
+    held, damped = contact.constrained[unlike, 1:, 1:n], contact.constrained[unlike, 1:, n + 1 : 2 * n]
+    points["constrained_rate"] = fastest_rate(-held, -damped)[of]
     points["apart"] = ~is_own(q) & np.isfinite(points["rate"]) & (points["rate"] > APART * q.omega)
     points["cells"] = cells.cells_for(np.maximum(points["rate"], q.omega), q.omega)
     for name, values in confinement_of(q, contact)._asdict().items():
@@ -126,8 +121,9 @@ def _points(q: Linear, kind: Kind, frames: bool) -> np.ndarray:
         _set_exponentials(points[i], ContactCoordinates(*(one[i] for one in contact)))
     there = np.flatnonzero(points["cells"] > 0)
     if frames and len(there):
-        some = ContactCoordinates(*(one[there] for one in contact))
-        frame = frame_of(natural_coordinates(selected(q, there), some), q.omega[there])
+        unlike, of = np.unique(unlike[of[there]], return_inverse=True)
+        some = ContactCoordinates(*(one[unlike] for one in contact))
+        frame = frame_of(natural_coordinates(selected(q, unlike), some), q.omega[there], of)
         points["rounding"][there] = frame.rounding
         points["frame_eta"][there], points["frame_square"][there] = frame.eta, frame.square
         points["frame_scale"][there] = frame.scale

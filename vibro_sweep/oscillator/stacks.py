@@ -72,12 +72,29 @@ def solved(A: np.ndarray, b: np.ndarray) -> np.ndarray:
         return np.stack([solved(*entry) for entry in zip(A, np.broadcast_to(b, A.shape[:-1]), strict=True)])
 
 
+def well_conditioned(A: np.ndarray) -> np.ndarray:
+    """(...): whether the condition number of each is certainly below 1e-3 of that of a matrix singular to rounding."""
+    n = A.shape[-1]
+    try:
+        inverse = np.linalg.inv(A)
+    except np.linalg.LinAlgError:
+        return np.zeros(A.shape[:-2], bool)
+    return n**2 * np.abs(A).max((-2, -1)) * np.abs(inverse).max((-2, -1)) < 1e-3 / (n * np.finfo(float).eps)
+
+
 def least_squares(A: np.ndarray, b: np.ndarray) -> np.ndarray:
     """x (..., N) with the least |A x - b|, and of these the least |x|."""
     left, sizes, right = np.linalg.svd(A)
     kept = sizes > A.shape[-1] * np.finfo(float).eps * sizes[..., :1]
     parts = np.divide(times(transposed(left), b), sizes, where=kept, out=np.zeros(sizes.shape))
     return times(transposed(right), parts)
+
+
+def different(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """One index of each different row of bits of (n, m), and to which of these each row belongs, (n,)."""
+    as_bytes = np.ascontiguousarray(rows, float).view(f"V{rows.shape[-1] * 8}")[:, 0]
+    _, first, place = np.unique(as_bytes, return_index=True, return_inverse=True)
+    return first, place
 
 
 def kron2(A: np.ndarray) -> np.ndarray:

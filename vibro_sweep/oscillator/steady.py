@@ -2,7 +2,17 @@
 
 import numpy as np
 
-from vibro_sweep.oscillator.stacks import diagonal, dot, finite, least_squares, only, solved, times, transposed
+from vibro_sweep.oscillator.stacks import (
+    diagonal,
+    dot,
+    finite,
+    least_squares,
+    only,
+    solved,
+    times,
+    transposed,
+    well_conditioned,
+)
 
 DRIVEN = 1e-14  # part of the force on a mode below which it is rounding
 UNBALANCED = 1e-9  # of the constant force: what no state balances
@@ -25,6 +35,8 @@ def responses(q, force: np.ndarray) -> np.ndarray:
         scale = 1 / np.sqrt(np.abs(diagonal(q.M)))
         scaled = Z * (scale[..., :, None] * scale[..., None, :])
     known = finite(scaled)
+    if well_conditioned(only(known, scaled)).all():  # most are: the singular values take long
+        return solved(Z, force)
     left, sizes, right = np.linalg.svd(only(known, scaled))
     regular = sizes > sizes.shape[-1] * np.finfo(float).eps * sizes[..., :1]
     plain = regular.all(-1) | ~known

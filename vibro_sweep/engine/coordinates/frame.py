@@ -21,7 +21,7 @@ import numpy as np
 from vibro_sweep.engine.coordinates.contact import Natural, flight_matrix
 from vibro_sweep.engine.coordinates.invariant_planes import NO_PLANES, UNOBSERVABLE, Planes, invariant_planes, moved
 from vibro_sweep.engine.coordinates.metric import Matrix, in_the_metric, parts
-from vibro_sweep.oscillator.stacks import diagonal, dot, finite, kron2, only, transposed
+from vibro_sweep.oscillator.stacks import diagonal, different, dot, finite, kron2, only, transposed
 
 CLASSICAL = 1e-13  # of the matrices: what may couple modes and be neglected
 NO_PART = 1e-14  # of the terms of the gap: what is rounding
@@ -40,8 +40,11 @@ class Frame(NamedTuple):
     back: np.ndarray  # (..., 2 N, 2 N): its inverse
 
 
-def frame_of(natural: Natural, omega: np.ndarray) -> Frame:
-    """omega (n,): rates for planes that have none. `to` is NaN, and so are exponents, where roots cannot be parted."""
+def frame_of(natural: Natural, omega: np.ndarray, of: np.ndarray) -> Frame:
+    """Of n oscillators, those of which `of` (n,) says which of `natural` it moves like without forces.
+
+    omega (n,): rates for planes that have none. `to` is NaN, and so are exponents, where roots cannot be parted.
+    """
     A = flight_matrix(natural.stiffness, natural.damping)
     root = np.sqrt(natural.masses)
     K, C = (in_the_metric(natural, matrix) for matrix in (natural.stiffness, natural.damping))
@@ -59,7 +62,12 @@ def frame_of(natural: Natural, omega: np.ndarray) -> Frame:
     seconds = np.take_along_axis(seconds, order[:, None], -1)
     product = square + eta**2
     scale = np.maximum(np.sqrt(np.abs(square)), LEAST_SCALE * np.sqrt(np.maximum(product, 0)))
-    scale = np.where(scale > SLOWEST * omega[:, None], scale, omega[:, None])
+    turns = scale[of] > SLOWEST * omega[:, None]
+    unlike, place = different(np.column_stack([of, np.where(turns.all(-1), 0.0, omega)]))
+    which, scale = of[unlike], np.where(turns, scale[of], omega[:, None])[unlike]
+    A, eta, square, seconds, natural = (
+        *(one[which] for one in (A, eta, square, seconds)), Natural(*(one[which] for one in natural)),
+    )  # fmt: skip
     back = np.empty(A.shape)
     back[..., 1::2] = seconds
     back[..., 0::2] = (A @ seconds + eta[:, None] * seconds) / scale[:, None]
@@ -70,7 +78,8 @@ def frame_of(natural: Natural, omega: np.ndarray) -> Frame:
     back = kron2(natural.to_contact) @ back
     back[:, 0, 1::2][unseen[:, 0]] = 0.0
     to = np.where(parted[:, None, None], np.linalg.inv(only(parted, back)), np.nan)
-    return Frame(eta, square, scale, rounding, to, back)
+    of_these = (one[place] for one in (eta, square, scale, rounding[which], to, back))
+    return Frame(*of_these)
 
 
 def _modes(root: np.ndarray, stiffness: Matrix, damping: Matrix) -> tuple[Planes, np.ndarray]:

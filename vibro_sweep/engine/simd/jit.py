@@ -3,16 +3,14 @@
 import contextlib
 import functools
 import hashlib
-from pathlib import Path
 
-import llvmlite
 import numba
 from numba.core import config, types
 from numba.core.cpu import CPUTargetOptions
 
 from vibro_sweep.checks.errors import MachineError
 from vibro_sweep.engine.simd import kernel_cache
-from vibro_sweep.engine.simd.kernel_cache import FOLDER, cache_of
+from vibro_sweep.engine.simd.kernel_cache import cache_of
 
 if config.DISABLE_JIT:
     raise MachineError("NUMBA_DISABLE_JIT is set, and kernels need numba's compiler: unset it")
@@ -153,35 +151,7 @@ def _compiled(function, compiler, forceinline=False, **options):
     return kernel
 
 
-def _works() -> bool:
-    """Whether kernels compile as one, and compute what they should, with this numba."""
-    from vibro_sweep.engine.simd import self_test  # whose kernels are made by this module
-
-    try:
-        return self_test.works(_compiled(self_test.kernel, WholeCompiler))
-    except Exception:  # whatever numba's internals raise
-        return False
-
-
-def _usable() -> bool:
-    """`_works`, tried once for each numba and kept beside the compiled kernels."""
-    if WholeCompiler is None:
-        return False
-    kept = FOLDER and Path(FOLDER, f"compiles-as-one-{numba.__version__}-{llvmlite.__version__}")
-    try:
-        return kept.read_text() == "yes"
-    except (AttributeError, OSError, ValueError):
-        pass
-    works = _works()
-    with contextlib.suppress(AttributeError, OSError):
-        kept.write_text("yes" if works else "no")
-    return works
-
-
-if not _usable():
-    NoInlineCompiler = PartCompiler = QuickCompiler = SmallCompiler = WholeCompiler = None
-
 AS_ONE = WholeCompiler is not None  # else other multiply-adds are fused, and last digits differ
 if not AS_ONE:
-    reason = "it compiles them otherwise than expected" if IS_TESTED else f"tried were {', '.join(TESTED)}"
-    kernel_cache.slower = f"with numba {numba.__version__} this takes about five times as long: {reason}"
+    tried = ", ".join(TESTED)
+    kernel_cache.slower = f"with numba {numba.__version__} this takes about five times as long: tried were {tried}"

@@ -1,4 +1,4 @@
-"""Whether kernels compile as one with the numba that is installed: a small kernel with all that large ones use.
+"""A small kernel with all that large ones use: whether kernels compile as one with the numba that is installed.
 
 Records and their rows, lanes and their intrinsics, tuples, loops that end early, and kernels that are called: plain,
 inlined, kept as a call, and without fused multiply-adds.
