@@ -232,7 +232,7 @@ def test_limits_of_a_frequency_are_said_in_hertz_too():
     data = vs.sweep(system, {"omega": [2 * np.pi, 4 * np.pi]}, transient=2, record=2)
     with pytest.raises(vs.PlotError, match=r"has omega from 6.28319 to 12.5664 \[rad/s\], which is 1 to 2 Hz"):
         vs.plot(data, xlim=(1, 2))
-    with pytest.raises(vs.PlotError, match=r"'Hz' is not swept; allowed: omega \[rad/s\]"):
+    with pytest.raises(vs.PlotError, match=r"'Hz' is no axis here; allowed: omega \[rad/s\]"):
         vs.plot(data, "iteration", at={"Hz": 1})
 
 

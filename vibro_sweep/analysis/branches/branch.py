@@ -8,7 +8,7 @@ the end of a branch is not a motion any more.
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -208,9 +208,12 @@ def continue_orbit(
     return Branch(parameter, special, begins, ends, False, start, down.frame, rows, None, contacts)
 
 
-def checked_observe(observe: object, q: Linear) -> tuple[str, ...]:
+def checked_observe(observe: Any, q: Linear) -> tuple[str, ...]:
     """The words of `observe`. Raises ValueError."""
-    words = tuple(observe) if isinstance(observe, Iterable) and not isinstance(observe, (str, bytes, dict)) else None
+    try:
+        words = None if isinstance(observe, (str, bytes, dict)) else tuple(observe)
+    except TypeError:  # nothing to go through
+        words = None
     if words is None or any(not isinstance(word, str) or word not in ALONG_BRANCHES for word in words):
         raise ArgumentError(not_allowed("observe", observe, f"[] or {list(ALONG_BRANCHES)}"))
     if words and not q.compliant:
