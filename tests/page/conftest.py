@@ -25,7 +25,7 @@ def view(page):
     return answers(page, "open", 1)[0]["view"] | {"columns": 64, "transient": 100, "record": 20}
 
 
-@pytest.fixture(scope="package")
+@pytest.fixture(scope="module")  # its loop is not to be there in other modules, which have one of their own
 def browser():
     found = next((path for name in ("chromium", "chromium-browser") if (path := shutil.which(name))), None)
     if found is None:
