@@ -165,8 +165,7 @@ def continue_orbit(
     told by `.status`.
 
     Raises ValueError for an orbit that is not ok, a name that is not a number of the system, bounds that do not hold
-    its value, the restitution of a stop on which the mass rests,
-    or contacts of rigid stops.
+    its value, the restitution of a stop on which the mass rests, or contacts of rigid stops.
 
     Examples
     --------

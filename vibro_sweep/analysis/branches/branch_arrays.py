@@ -25,8 +25,8 @@ from vibro_sweep.tables.outcomes import BRANCHES, names
 SHAPES = {
     # branch_origin: the point that it was followed from; branch_begins, branch_ends: indices among the special points
     "": "branch_period branch_symmetric branch_closed branch_origin branch_begins branch_ends branch_status",
-    "n": "value stop_distance min_impact_speed residual unstable status "
-    "contact_force_max penetration_max",  # value: of the parameter; of contacts where they are observed
+    # value: of the parameter; the last two where contacts are observed
+    "n": "value stop_distance min_impact_speed residual unstable status contact_force_max penetration_max",
     "n 2N": "state multiplier_re multiplier_im",
     # as `orbit.impacts`; impact_t_off: the end of the rest after an impact, or NaN
     "n K": "impact_t impact_v impact_t_off",
