@@ -64,6 +64,7 @@ def test_points_beside_curves():
     curve = vs.bifurcation_curve(graze, ("F", "omega"), ((0.3, 0.6), (0.75, 0.85)))
     figure = vs.plot(curve, points={"F": [0.4], "omega": [0.8]})
     assert marked(figure.axes[0]) == [([0.4], [0.8])]
+    assert "measured" in [text.get_text() for text in figure.legends[0].get_texts()]
     with pytest.raises(vs.PlotError, match="points and relative exclude each other"):
         vs.plot(curve, points={"F": [0.4], "omega": [0.8]}, relative=True)
     for result, axes in ((curve, "F, omega"), (branch, "F, x1")):

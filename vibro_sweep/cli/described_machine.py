@@ -21,9 +21,10 @@ if TYPE_CHECKING:
     from vibro_sweep.scene import Continuation, Scene
 
 FEW = 4  # modes that are named
-PLACES = 400  # values of the swept number, or points of two, at which the free motion is looked at
+PLACES = 10_000  # values of the swept number, or points of two, at which the free motion is looked at
 DENSE = 2001  # the same along branches
-FINER = 3  # times that a peak of it is looked at more closely
+FINER = 3  # times that a peak of it is looked at more closely, at so many values:
+BESIDE = 400
 COUNTS = ("impacts_right", "impacts_left", "contacts_right", "contacts_left")
 FREE = 1e-8  # of the fastest mode: a slower one is free
 
@@ -52,14 +53,14 @@ def _axes(scene: "Scene | Continuation") -> dict[str, np.ndarray]:
     system = scene.system
     if ends := getattr(scene, "parameter", {}):
         axes = {
-            key: np.linspace(*bounds, DENSE if len(ends) == 1 else math.isqrt(DENSE)) for key, bounds in ends.items()
+            key: np.linspace(*bounds, DENSE if len(ends) == 1 else math.isqrt(PLACES)) for key, bounds in ends.items()
         }
         for key in axes if len(axes) == 1 else ():
             for _ in range(FINER):
                 _, size, _ = free_motion(linears(system, axes))
                 peak, values = int(np.argmax(np.nan_to_num(size, nan=0.0))), axes[key]
                 beside = values[max(peak - 1, 0)], values[min(peak + 1, len(values) - 1)]
-                axes[key] = np.union1d(values, np.linspace(*beside, PLACES))
+                axes[key] = np.union1d(values, np.linspace(*beside, BESIDE))
         return axes
     axes = {key: np.sort(values) for key, values in scene.sweep.items() if key in system.described}
     return {key: _some(values, len(axes)) for key, values in axes.items()}

@@ -11,7 +11,6 @@ from vibro_sweep.plotting import planes
 from vibro_sweep.plotting.drawn_curves import Drawn, chart_of, draw, frame_of, handles, name_points
 from vibro_sweep.plotting.drawn_sweep import DrawnSweep, PlotError
 from vibro_sweep.plotting.figure import Panels
-from vibro_sweep.plotting.measured import draw_measured
 from vibro_sweep.plotting.plot_options import PlotOptions
 from vibro_sweep.plotting.ragged import RaggedFile, in_units_of, sweep_below
 from vibro_sweep.plotting.relative import axis_label, check_relative
@@ -40,14 +39,8 @@ def chart(path: str | Path, options: PlotOptions) -> Iterator[Panels]:
     names = file.parameters
     curves = drawn(file, names, options.relative)
     labels = [axis_label(name, options.relative, file.unit(name)) for name in names]
-    panels = chart_of(f"Bifurcation curves: {file.title}", 5.0, curves, names, labels, options)
-
-    def draw_all(axes):
-        panels.draw(axes)
-        x, y = ((name, file.stored_unit(name)) for name in names)
-        draw_measured(axes[0, 0], options.points, x, y)
-
-    yield panels._replace(draw=draw_all, measurable=tuple(names))
+    units = [file.stored_unit(name) for name in names]
+    yield chart_of(f"Bifurcation curves: {file.title}", 5.0, curves, names, labels, options, units)
 
 
 def drawn(file: RaggedFile, names: list[str], relative: bool = False) -> list[Drawn]:

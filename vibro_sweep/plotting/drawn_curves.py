@@ -10,6 +10,7 @@ from matplotlib.lines import Line2D
 
 from vibro_sweep.plotting.figure import Panels
 from vibro_sweep.plotting.labels import arrange, legend_below, name_beside
+from vibro_sweep.plotting.measured import draw_measured
 from vibro_sweep.plotting.plot_options import PlotOptions
 from vibro_sweep.plotting.scales import scale_of
 from vibro_sweep.plotting.style import INK, axis_name, with_unit
@@ -45,8 +46,10 @@ def plot_curves(curves: list[Drawn], names: tuple[str, str], system=None, width:
     return options.draw(chart_of("bifurcation curves", 4.2, curves, names, labels, options))[0].figure
 
 
-def chart_of(title: str, height: float, curves: list[Drawn], names, labels, options: PlotOptions) -> Panels:
-    """Curves in the plane of two numbers, with their legend and the names of their points."""
+def chart_of(
+    title: str, height: float, curves: list[Drawn], names, labels, options: PlotOptions, units=(None, None)
+) -> Panels:
+    """Curves in the plane of two numbers with these units, with their legend and the names of their points."""
 
     def draw_all(axes):
         ax = axes[0, 0]
@@ -54,11 +57,13 @@ def chart_of(title: str, height: float, curves: list[Drawn], names, labels, opti
         draw(ax, curves)
         ax.set(xlim=options.xlim or ax.get_xlim(), ylim=options.ylim or ax.get_ylim())
         ax.set(xlabel=labels[0], ylabel=labels[1])
-        legend_below(ax, handles(curves, frame_of(ax)), 6, grow=options.size is None, columnspacing=1.2)
+        draw_measured(ax, options.points, *zip(names, units, strict=True))
+        measured = [line for line in ax.lines if line.get_gid() == "measured"]
+        legend_below(ax, handles(curves, frame_of(ax)) + measured, 6, grow=options.size is None, columnspacing=1.2)
         arrange(ax.figure)
         name_points(ax, curves)
 
-    return Panels(title, height, draw_all)
+    return Panels(title, height, draw_all, measurable=tuple(names))
 
 
 def frame_of(ax) -> tuple[tuple[float, float], tuple[float, float]]:
