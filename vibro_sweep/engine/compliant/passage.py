@@ -1,26 +1,13 @@
 """The passage through a contact, eight orbits at once: from the touch to the end of the cell of the release.
 
-Where the contact is faster than what moves beside it, it has a closed form (closed_form.py); others take Taylor series
-(by_series.py). Both begin at a guess of its time. An orbit is left alone where that is bad, where the end that they
-find is not the first one for certain, and where the mass does not leave the stop freely: pressing.py follows such
-contacts one by one.
-
-The end is the first (Polya; L h = h'' + 2 gamma h' + K h has no more zeros than 2 and the changes of sign of L h, on
-intervals shorter than pi/kd): of delta, L delta = a, where a changes its sign once at most, or does not and presses,
-or is small (`firm`); of the force F/m_e, L F/m_e = k a + c a' + K p, where that does not change its sign.
+Orbits whose contact contacts_by_pieces.py does not pass for certain are left alone, and so are those whose mass does
+not leave the stop freely: pressing.py follows such contacts one by one.
 """
 
 import math
 
-from vibro_sweep.engine.compliant.by_series import pass_by_series
-from vibro_sweep.engine.compliant.closed_form import pass_in_closed_form
-from vibro_sweep.engine.compliant.passage_series import (
-    acceleration_of,
-    choose_equations,
-    from_contact,
-    of_stop,
-    turn,
-)
+from vibro_sweep.engine.compliant.contact_rows import from_contact, of_stop, turn, turn_far
+from vibro_sweep.engine.compliant.contacts_by_pieces import pass_by_pieces
 from vibro_sweep.engine.motion.strike import bound_third, derivatives, leaves_freely, load_x1
 from vibro_sweep.engine.simd.columns import put_transposed, rows_of, weigh
 from vibro_sweep.engine.simd.jit import inline, jit
@@ -41,17 +28,6 @@ def change_of(passage, z, m, u):
     return x * u, v * u + x
 
 
-@inline
-def guess(speed, a, duration, lean, pull):
-    """How long the contact lasts, about."""
-    y = (lean * a + pull) / speed
-    size = abs(y)
-    inner = select(size < 1.0, y, 1.0 / select(size < 1.0, 1.0, size))
-    square = inner * inner
-    angle = inner * (15.0 + 4.0 * square) / (15.0 + 9.0 * square) * (2.0 / math.pi)
-    return duration * select(size < 1.0, 1.0 + angle, select(y < 0.0, angle, 2.0 - angle))
-
-
 @jit
 def pass_contacts(passage, strikes, z, touching, side, d, v):
     """Pass the contacts of the orbits that are `touching` a compliant stop, at d in their cells with the velocity v.
@@ -61,8 +37,6 @@ def pass_contacts(passage, strikes, z, touching, side, d, v):
     """
     states, masses, y, right = len(passage.y), len(passage.push), passage.y, side > 0.0
     wall, width = select(right, row(strikes.right, 0), row(strikes.left, 0)), row(strikes.width, 0)
-    choose_equations(passage, right)
-    # the touch
     s, q = turn(row(passage.omega, 0) * d)
     sin, cos = z[states] * q + z[states + 1] * s, z[states + 1] * q - z[states] * s
     speed = side * v
@@ -72,29 +46,10 @@ def pass_contacts(passage, strikes, z, touching, side, d, v):
         change, vm = change_of(passage, z, m, d)
         put(y, 2 * m, (z[2 * m] + change) - row(passage.push, m) * wall)
         put(y, 2 * m + 1, vm - row(passage.push, m) * v)
-    a = acceleration_of(passage, sin, cos)
-    about = guess(
-        speed,
-        a,
-        of_stop(passage.duration, right),
-        of_stop(passage.lean, right),
-        of_stop(passage.pull, right),
-    )
-    # the contact
-    to_section, K, omega = row(passage.ahead, 0) * width - d, -row(passage.row, 0), row(passage.omega, 0)
-    ready = touching & (of_stop(passage.ends, right) > 0.0)
-    split = ready & (about <= of_stop(passage.reach, right)) & (16.0 * K * speed * speed >= a * a)
-    passed, crossing, time = split & ~split, split & ~split, 0.0 * d
-    if bits(split) != 0:
-        passed, crossing, time = pass_in_closed_form(passage, split, right, speed, about, sin, cos, to_section)
-        s, q = turn(omega * time)
-        sin, cos = select(passed, sin * q + cos * s, sin), select(passed, cos * q - sin * s, cos)
-    put(passage.closed, 0, select(passed, 1.0, 0.0))
-    ready = ready & ~passed
-    if bits(ready) != 0:
-        more, over, longer, s, q = pass_by_series(passage, ready, right, speed, about, sin, cos, to_section)
-        passed, crossing = passed | more, crossing | over
-        time, sin, cos = select(more, longer, time), select(more, s, sin), select(more, q, cos)
+    to_section = row(passage.ahead, 0) * width - d
+    passed, crossing, time = pass_by_pieces(passage, touching, right, speed, sin, cos, to_section)
+    s, q = turn_far(row(passage.omega, 0) * time)
+    sin, cos = sin * q + cos * s, cos * q - sin * s
     put(passage.speed, 0, select(touching, speed, row(passage.speed, 0)))
     put(passage.time, 0, select(touching, time, row(passage.time, 0)))
     return leave_stop(passage, strikes, passed, crossing, side, d + time, sin, cos)

@@ -9,8 +9,7 @@ transformation sets the two motions apart:
     phi' = F phi           chi' = S chi
 
 L and H follow from these by iteration where f is faster than q; nothing large is subtracted, and small entries keep
-their digits. With them short contacts are passed in closed form (closed_tables.py). In a contact that lasts phi dies
-away, and the slow motion is followed alone (slow_contact.py).
+their digits. In a contact that lasts phi dies away, and the slow motion is followed alone (slow_contact.py).
 """
 
 import math

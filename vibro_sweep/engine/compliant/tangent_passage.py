@@ -2,8 +2,11 @@
 
 import math
 
-from vibro_sweep.engine.compliant.passage_series import INVERSE, carry_vector, from_contact, of_stop
+from vibro_sweep.engine.compliant.contact_pieces import PIECES, TERMS
+from vibro_sweep.engine.compliant.contact_rows import from_contact, of_stop
+from vibro_sweep.engine.compliant.contacts_by_pieces import next_group, tables_of, value_and_slope
 from vibro_sweep.engine.compliant.relaxing import GONE
+from vibro_sweep.engine.simd.columns import rows_of, weigh
 from vibro_sweep.engine.simd.jit import inline, noinline
 from vibro_sweep.engine.simd.lanes import LANES, alike, bits, lanes_of, lowest, number, select
 from vibro_sweep.engine.simd.memory import put, row
@@ -26,26 +29,18 @@ def carry_through(law, e, passed):
 def carry_through_contacts(passage, strikes, t, orbits, passed):
     """`carry_through` where there are some; their flight up to the touch is collected."""
     who, side, size = lanes_of(passed), row(strikes.side, 0), len(t.growth)
-    right, time, parts = side > 0.0, row(passage.time, 0), row(passage.parts, 0)
+    right, time = side > 0.0, row(passage.time, 0)
     c, p = of_stop(passage.damping, right), of_stop(passage.preload, right)
     touch, release = p / row(passage.speed, 0), p / row(passage.speed_after, 0)
-    by_force, u = of_stop(passage.by_force, right) > 0.0, time / parts
+    by_force = of_stop(passage.by_force, right) > 0.0
     forgets, apart = who & by_force & ~(p > 0.0), GONE * c
     apply_flight(t, who)
-    closed = who & (row(passage.closed, 0) > 0.0)
-    if bits(closed) != 0:
-        set_slow_flight(passage, time)
+    set_flight(passage, who, right, time)
     for j in range(size):
         to_contact(passage, t, side, j)
         vector = passage.vector
         put(vector, 1, row(vector, 1) - touch * row(vector, 0))
-        if bits(closed) != 0:
-            fly_closed(passage, c, closed)
-        part, going = 0.0 * u, who & ~closed
-        while bits(going) != 0:
-            carry_vector(passage, c, u, going)
-            part = part + 1.0
-            going = going & (part < parts)
+        fly_in_contact(passage, c, who)
         delta = row(vector, 0)
         put(vector, 1, row(vector, 1) + select(by_force, -c, release) * delta)
         for n in range(len(t.places) // size):
@@ -78,60 +73,51 @@ def forget(t, j, who, jump):
 
 
 @noinline
-def set_slow_flight(passage, time):
-    """e^{S time} of w2, w2', ..., for contacts in closed form."""
-    others, slow, terms = len(passage.push) - 1, len(passage.chi), row(passage.terms, 0)
-    size, E, term = 2 * others, passage.slow_flight, passage.slow_term
-    for j in range(size):
-        for i in range(size):
-            put(term, i, 1.0 if i == j else 0.0)
-            put(E, i * size + j, 1.0 if i == j else 0.0)
-        for n in range(1, passage.most):
-            step = select(terms > float(n), time * INVERSE[n - 1], 0.0)
-            for m in range(others):
-                first = (passage.block * others + m) * slow
-                total = row(passage.slow, first) * row(term, 0)
-                for i in range(1, size):
-                    total = total + row(passage.slow, first + i) * row(term, i)
-                put(term, size + 2 * m, step * row(term, 2 * m + 1))
-                put(term, size + 2 * m + 1, step * total)
-            for i in range(size):
-                put(term, i, row(term, size + i))
-                put(E, i * size + j, row(E, i * size + j) + row(term, i))
+def set_flight(passage, who, right, time):
+    """The flight of (delta, delta', w2, w2', ..) from the touch to the release of these contacts."""
+    block, sign = tables_of(passage, right)
+    E, states, masses, size = passage.flight, len(passage.y), len(passage.push), len(passage.touch) + 1
+    h, piece = of_stop(passage.length, block), row(passage.piece, 0)
+    while bits(who) != 0:
+        now, n, p = next_group(who, block, piece)
+        who = who & ~now
+        v, at = time - p * h, n * PIECES + p
+        for e in range(states):
+            column = e - 1 if e > 0 else size - 1
+            x, slope = value_and_slope(passage.course, (at * size + column) * TERMS, v)
+            if p == 0 and e > 0:
+                x, slope = time * x, x + time * slope
+            turned = sign if e > 1 else 0.0 * sign + 1.0
+            put(E, e, select(now, turned * x, row(E, e)))
+            put(E, states + e, select(now, turned * slope, row(E, states + e)))
+            for m in range(1, masses):
+                first = (at * (masses - 1) + m - 1) * size + column
+                x, slope = value_and_slope(passage.others, first * TERMS, v)
+                if e == 2 * m:
+                    x = x + 1.0
+                if e == 2 * m + 1:
+                    x, slope = x + time, slope + 1.0
+                turned, at_place = sign if e < 2 else 0.0 * sign + 1.0, 2 * m * states + e
+                put(E, at_place, select(now, turned * x, row(E, at_place)))
+                put(E, at_place + states, select(now, turned * slope, row(E, at_place + states)))
 
 
 @inline
-def fly_closed(passage, c, who):
-    """Carry the tangent `vector` of these orbits on through a contact in closed form.
+def fly_in_contact(passage, c, who):
+    """Carry the tangent `vector`, (delta, delta' + c delta, w2, ...), from the touch to the release.
 
-    With J = (1, 0; c, 1), phi = J (phi, phi') here: f = phi + J L q, q = chi + H J^-1 phi (slow_manifold.py).
+    In these coordinates no jump of size c or k acts at touch and release (tangent_in_contact.py).
     """
-    size, slow, vector = len(passage.slow_term) // 2, len(passage.chi), passage.vector
-    x, g, chi, E = row(passage.flight, 0), row(passage.flight, 1), passage.slow_term, passage.slow_flight
-    L, F, H = 2 * passage.block * slow, 10 * passage.block + 6, 2 * passage.block * size
-    phi, v = row(vector, 0), row(vector, 1)
-    for j in range(size):
-        place, speed = row(passage.manifold, L + j), row(passage.manifold, L + slow + j)
-        phi = phi - place * row(vector, j + 2)
-        v = v - (speed + c * place) * row(vector, j + 2)
-    for j in range(size):
-        h = row(passage.share, H + 2 * j + 1)
-        put(chi, j, row(vector, j + 2) - ((row(passage.share, H + 2 * j) - c * h) * phi + h * v))
-    phi, v = (
-        x * phi + g * (row(passage.fast, F) * phi + row(passage.fast, F + 1) * v),
-        x * v + g * (row(passage.fast, F + 2) * phi + row(passage.fast, F + 3) * v),
-    )
-    delta, speed = phi, v
-    for j in range(size):
-        h = row(passage.share, H + 2 * j + 1)
-        w = (row(passage.share, H + 2 * j) - c * h) * phi + h * v
-        for i in range(size):
-            w = w + row(E, j * size + i) * row(chi, i)
-        place, slope = row(passage.manifold, L + j), row(passage.manifold, L + slow + j)
-        delta, speed = delta + place * w, speed + (slope + c * place) * w
-        put(vector, j + 2, select(who, w, row(vector, j + 2)))
+    E, states, vector = passage.flight, len(passage.y), passage.vector
+    put(vector, 1, row(vector, 1) - select(who, c * row(vector, 0), 0.0))
+    z = rows_of(vector)
+    delta = weigh(E, 0, 1, z)
     put(vector, 0, select(who, delta, row(vector, 0)))
-    put(vector, 1, select(who, speed, row(vector, 1)))
+    for a in range(1, states):
+        total = weigh(E, a * states, 1, z)
+        if a == 1:
+            total = total + c * delta
+        put(vector, a, select(who, total, row(vector, a)))
 
 
 @inline

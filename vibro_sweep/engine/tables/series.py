@@ -16,7 +16,7 @@ def derive(A, row, size, series):
     """series[i, n]: Taylor coefficient n of (row . z) as a function of z_i, for z' = A z."""
     for i in range(size):
         series[i, 0] = row[i]
-    for n in range(1, ORDER):
+    for n in range(1, series.shape[1]):
         for i in range(size):
             total = 0.0
             for j in range(size):
