@@ -64,8 +64,8 @@ def test_the_free_motion_in_closed_form():
         assert data["impact_power"][i] == 0
         assert data["rms_x1"][i] == pytest.approx(touch.b / math.sqrt(2), rel=1e-13)
         assert data["rms_v1"][i] == pytest.approx(0.63 * touch.b / math.sqrt(2), rel=1e-13)
-        assert data["peak_x1"][i] == pytest.approx(touch.b, rel=1e-8)
-        assert data["peak_v1"][i] == pytest.approx(0.63 * touch.b, rel=1e-8)
+        assert data["peak_x1"][i] == pytest.approx(touch.b, rel=1e-13)
+        assert data["peak_v1"][i] == pytest.approx(0.63 * touch.b, rel=1e-13)
 
 
 def test_balance_of_a_periodic_orbit():

@@ -6,19 +6,16 @@ from vibro_sweep.driver.blocks import Block
 from vibro_sweep.engine import points
 from vibro_sweep.engine.records import Kind
 from vibro_sweep.engine.simd.lanes import LANES
-from vibro_sweep.engine.tables.flight import WIDTH
 from vibro_sweep.oscillator.grid import linears
 from vibro_sweep.oscillator.stacks import dot, solved
 from vibro_sweep.tables import outcomes as status
 from vibro_sweep.tables.coordinates import state
 
-ROOM = 64  # impacts of a period there is room for at first
-MOST_ROOM = 8**4 * ROOM  # which takes 0.4 GB
-
 
 def energies_of(block: Block, steps: np.ndarray, kind: Kind, results: np.ndarray) -> dict[str, np.ndarray]:
     """The energies by dataset name, each of the shape of `steps` (n, m)."""
-    from vibro_sweep.engine.energy import new_workspace, run_energy
+    from vibro_sweep.engine.energy import run_energy
+    from vibro_sweep.engine.motion.energy_sums import sums_of
 
     shape, states = steps.shape, 2 * kind.masses
     systems = steps.reshape(-1)
@@ -36,20 +33,15 @@ def energies_of(block: Block, steps: np.ndarray, kind: Kind, results: np.ndarray
         "squares": np.zeros((len(systems), states)),
         "peaks": np.zeros((len(systems), states)),
     }
-    back = systems["back"] if "back" in systems.dtype.names else np.tile(np.eye(kind.masses), (len(systems), 1, 1))
-    # contiguous, whether they are the fields of one record, of several, or in reverse: for each the kernel would be
-    # compiled anew
-    origin = np.ascontiguousarray(systems["origin"]) if "origin" in systems.dtype.names else np.zeros(back.shape[:2])
-    back, masses = np.ascontiguousarray(back), np.ascontiguousarray(_contact_masses(block, shape).reshape(-1))
-    parts, room = _parts(systems), ROOM
-    while True:  # once in any case: what a scene needs is compiled with its first point, however that goes
-        run_energy(
-            systems, begins, resting, relaxed, masses, back, origin, block.plan.record, workspace, plan,
-            new_workspace(parts, room, kind.masses), wanted["loss"], wanted["squares"], wanted["peaks"], outcome,
-        )  # fmt: skip
-        room *= 8
-        if room > MOST_ROOM or workspace.ensemble.halt[0] != 0 or not (outcome == status.NOT_COMPUTED).any():
-            break
+    sums = np.zeros(len(systems), sums_of(kind.masses))
+    sums["back"] = systems["back"] if "back" in systems.dtype.names else np.eye(kind.masses)
+    sums["origin"] = systems["origin"] if "origin" in systems.dtype.names else 0.0
+    # contiguous, in whatever order the points come: for each layout the kernel would be compiled anew
+    masses = np.ascontiguousarray(_contact_masses(block, shape).reshape(-1))
+    run_energy(
+        systems, begins, resting, relaxed, masses, block.plan.record, workspace, plan, sums, wanted["loss"],
+        wanted["squares"], wanted["peaks"], outcome,
+    )  # fmt: skip
     known = np.where(status.is_valid(outcome), 1.0, np.nan)
     time = block.plan.record * 2 * np.pi / systems["omega"]
     named = {"impact_power": known * wanted["loss"] / time}
@@ -57,20 +49,6 @@ def energies_of(block: Block, steps: np.ndarray, kind: Kind, results: np.ndarray
         named[f"rms_{name}"] = known * np.sqrt(wanted["squares"][:, i] / time)
         named[f"peak_{name}"] = known * wanted["peaks"][:, i]
     return {name: values.reshape(shape) for name, values in named.items()}
-
-
-def _parts(systems: np.ndarray) -> int:
-    """A number of parts of a period that resolves every rate."""
-    rate = systems["rate"] if "rate" in systems.dtype.names else _fastest(systems)
-    least = np.maximum(rate, systems["omega"]) * 2 * np.pi / systems["omega"] / WIDTH
-    return int(np.max(systems["cells"] + least) + 1)
-
-
-def _fastest(systems: np.ndarray) -> np.ndarray:
-    """The largest modulus of the roots of the paper's oscillators."""
-    eta = systems["zeta"][:, None] * systems["omega_squared"]
-    beyond = np.sqrt(np.maximum(eta**2 - systems["omega_squared"], 0))
-    return np.maximum(np.sqrt(systems["omega_squared"]), eta + beyond).max(axis=-1)
 
 
 def _contact_masses(block: Block, shape: tuple[int, int]) -> np.ndarray:

@@ -54,7 +54,7 @@ def follow(w, periods, hits, samples, sections, impacts):
             records.times[i, 0] = math.floor(cells)
             records.times[i, 1] = (cells - math.floor(cells)) * q.width
             i += 1
-        part = Records(hits, records.rests, records.times[first:i], records.samples[first:i])
+        part = Records(hits, records.rests, records.times[first:i], records.samples[first:i], None)
         part = Ensemble(e.flights, e.orbits, e.strike, e.tangent, part, e.halt, e.law)
         carry(part, None, Readings(w.section, False, w.growth, 0))
         if o.status != status.OK:

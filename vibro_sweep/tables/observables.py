@@ -116,15 +116,14 @@ def variables(masses: int, gap: bool = False) -> tuple[Observable, ...]:
 
 def _energies(masses: int) -> tuple[Observable, ...]:
     """The variables that the designer of a damper looks at."""
-    too_long = "NaN where contacts take more than a million steps in a period"
     sizes = (("rms", "rms of", "root mean square of the {}"), ("peak", "peak of", "largest size of the {}"))
     return (
         _energy("impact_power", "power that stops take",
             "energy lost in impacts, and the work of the masses on compliant stops, in the recorded periods, per unit "
-            f"time; {too_long}", units="W"),
+            "time", units="W"),
         *(
             _energy(f"{size}_{x.name}", f"{label} {x.name}",
-                f"{text.format(x.text)} in the recorded periods; {too_long}", units=x.units)
+                f"{text.format(x.text)} in the recorded periods", units=x.units)
             for size, label, text in sizes
             for x in coordinates(masses)
         ),

@@ -9,10 +9,10 @@ import numpy as np
 
 from vibro_sweep.engine.compliant.distance import delta_of, set_delta
 from vibro_sweep.engine.compliant.law import lane_of
+from vibro_sweep.engine.motion.energy_sums import PLACES, WEIGHTS, largest_value
 from vibro_sweep.engine.motion.first_contact import polished_contact, set_gap
 from vibro_sweep.engine.motion.impacts import size_at
 from vibro_sweep.engine.motion.rest import first_nonzero
-from vibro_sweep.engine.quadrature import PLACES, WEIGHTS
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.tables.flight import ORDER, evaluate
 from vibro_sweep.engine.tables.products import change_within
@@ -20,7 +20,6 @@ from vibro_sweep.engine.tables.resting import bound_third_over
 from vibro_sweep.engine.tables.twofold import add, multiply
 
 NOTHING = 1e-250  # a contact that has died away, which has no end
-STEPS = 60  # of Newton's method, or halvings, towards a peak
 
 
 @jit
@@ -142,45 +141,11 @@ def go_on_in_contact(contact, u):
 
 
 @jit
-def slope_of(c, u):
-    """The derivative of a polynomial."""
-    total = 0.0
-    for n in range(ORDER - 1, 0, -1):
-        total = total * u + n * c[n]
-    return total
-
-
-@jit
-def peak_between(c, u):
-    """The largest value of a polynomial on [0, u] that turns back there once, or not."""
-    largest = max(c[0], evaluate(c, u)[0])
-    if slope_of(c, 0.0) > 0.0 > slope_of(c, u):
-        low, high = 0.0, u
-        at = u * slope_of(c, 0.0) / (slope_of(c, 0.0) - slope_of(c, u))
-        for _ in range(STEPS):
-            slope, curve = 0.0, 0.0
-            for n in range(ORDER - 1, 0, -1):
-                curve = curve * at + slope
-                slope = slope * at + n * c[n]
-            if slope > 0.0:
-                low = at
-            else:
-                high = at
-            newton = at - slope / curve if curve != 0.0 else low
-            after = newton if low < newton < high else 0.5 * (low + high)
-            if abs(after - at) <= 1e-9 * u:  # its square is below rounding
-                break
-            at = after
-        largest = max(largest, evaluate(c, at)[0])
-    return largest
-
-
-@jit
 def watch_contact(contact, side, u):
     """What is recorded of the contact over the time u of the series."""
     load_force(contact, side)
-    contact.largest = max(contact.largest, peak_between(contact.c[0], u))
-    contact.strongest = max(contact.strongest, peak_between(contact.force, u))
+    contact.largest = max(contact.largest, largest_value(contact.c[0], u))
+    contact.strongest = max(contact.strongest, largest_value(contact.force, u))
 
 
 @jit
@@ -190,11 +155,12 @@ def stored_energy(contact, n):
 
 
 @jit
-def integral_of_square(c, u):
+def integral_of_squared_slope(c, u):
     """The integral over [0, u] of the square of the derivative of a polynomial, which has the length of a series."""
     total = 0.0
     for n in range(len(PLACES)):
-        total += WEIGHTS[n] * slope_of(c, PLACES[n] * u) ** 2
+        _, slope = evaluate(c, PLACES[n] * u)
+        total += WEIGHTS[n] * slope * slope
     return total * u
 
 

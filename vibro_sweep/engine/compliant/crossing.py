@@ -12,6 +12,7 @@ from vibro_sweep.engine.compliant.force_phase import set_phase, turn_phase
 from vibro_sweep.engine.compliant.law import lane_of
 from vibro_sweep.engine.compliant.pressing import TOO_MANY, begin_contact, stay_in_contact
 from vibro_sweep.engine.compliant.relaxing import bring_stops, reach_of_relaxing, relax_by, set_distance, speed_of_stop
+from vibro_sweep.engine.motion.energy_sums import add_flight
 from vibro_sweep.engine.motion.first_contact import polished_contact, set_gap
 from vibro_sweep.engine.motion.impacts import (
     EXPLAINED,
@@ -116,6 +117,7 @@ def cross_cell_with_law(law, f, stops, o, records, t, k, s):
             return status.UNRESOLVED
         end = min(d, left)
         take_samples(o, records, k, s, s + end)
+        add_flight(records.sums, o, end)
         advance_exactly(o, end)
         turn_phase(contact, q.omega, end)
         if d == np.inf and (last or not is_finite(o)):

@@ -10,7 +10,7 @@ from vibro_sweep.engine.compliant.contact_series import (
     end_of_contact,
     enter,
     go_on_in_contact,
-    integral_of_square,
+    integral_of_squared_slope,
     leave,
     load_contact,
     stored_energy,
@@ -22,6 +22,8 @@ from vibro_sweep.engine.compliant.relaxing import bring_stops
 from vibro_sweep.engine.compliant.slow_contact import fast_that_died, load_slow, slow_step
 from vibro_sweep.engine.compliant.tangent_in_contact import CONTINUED, RELAXED, UNRELAXED, carry_over_contact
 from vibro_sweep.engine.compliant.vectors_set_apart import fly_vectors_apart, set_vectors_apart
+from vibro_sweep.engine.motion.energy_sums import add_contact
+from vibro_sweep.engine.motion.orbits import wall_of
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.tables.flight import evaluate
 from vibro_sweep.engine.variational import tangent_flight
@@ -97,10 +99,11 @@ def stay_in_contact(law, f, stops, o, records, t, k, s):
             ending = False
         end = min(d, left)
         sample_contact(contact, stops, o, records, k, side, s + w, s + w + end)
+        add_contact(records.sums, contact, wall_of(stops, side), side, end)
         contact.time += end
         if contact.watched:
             watch_contact(contact, side, end)
-            contact.work += contact.damping[n] * integral_of_square(contact.c[0], end)
+            contact.work += contact.damping[n] * integral_of_squared_slope(contact.c[0], end)
         if t.wanted and contact.fast == 0:
             carry_matrix(contact, side, end)
         go_on_in_contact(contact, end)
@@ -191,7 +194,7 @@ def sample_contact(contact, stops, o, records, k, side, start, stop):
     while i < len(times) and times[i, 0] == k and times[i, 1] <= stop:
         u = max(times[i, 1] - start, 0.0)
         x, v = evaluate(contact.c[0], u)
-        samples[i, 0], samples[i, 1] = (stops.right if side > 0.0 else stops.left) + side * x, side * v
+        samples[i, 0], samples[i, 1] = wall_of(stops, side) + side * x, side * v
         for j in range(1, len(contact.push)):
             x, v = evaluate(contact.c[j], u)
             samples[i, 2 * j] = x + contact.push[j] * samples[i, 0]

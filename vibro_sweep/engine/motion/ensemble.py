@@ -16,6 +16,7 @@ from vibro_sweep.engine.compliant.passed_contacts import add_passed, clear_passe
 from vibro_sweep.engine.compliant.tangent_passage import carry_through
 from vibro_sweep.engine.motion.coast import fly_periods, is_clear
 from vibro_sweep.engine.motion.discontinuity import map_period
+from vibro_sweep.engine.motion.energy_sums import are_wanted
 from vibro_sweep.engine.motion.impacts import cross_cell, watch_rebound
 from vibro_sweep.engine.motion.orbits import add_count, begin_free_flight, keep_start, load_constants, take_samples
 from vibro_sweep.engine.motion.scan import (
@@ -165,13 +166,16 @@ def advance_to_candidates(e, advancing, readings):
 
     Each step is done for all of them before the next, so that the processor has work while one waits for its numbers.
     """
-    sampled, strikes = len(e.records.times) > 0, e.strike[0]
+    summed, strikes = are_wanted(e.records.sums), e.strike[0]
+    sampled = summed or len(e.records.times) > 0
     waiting = 0
     while advancing != 0:
         for i in range(LANES):
             if advancing >> i & 1:
                 o = e.orbits[i]
-                if sampled:
+                if summed:
+                    o.candidate = o.cell
+                elif sampled:
                     o.candidate = next_watched(flight_of(e, o), o, records_of(e, o).times)
                 else:
                     find_candidate(e, o, flight_of(e, o), readings)
@@ -182,7 +186,8 @@ def advance_to_candidates(e, advancing, readings):
                 q = f.oscillator[0]
                 k, X = candidate_state(o, f.nodes)
                 o.cell = k
-                if k < o.crossed and o.stops[0] < number(X, 0) < o.stops[1] and is_open(e.law, e, o, k, readings):
+                inside = k < o.crossed and o.stops[0] < number(X, 0) < o.stops[1] and not summed
+                if inside and is_open(e.law, e, o, k, readings):
                     put(strikes.z, i, X)
                     waiting |= 1 << i
                     advancing ^= 1 << i

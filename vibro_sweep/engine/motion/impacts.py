@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from vibro_sweep.engine.motion.energy_sums import add_flight, add_impact
 from vibro_sweep.engine.motion.first_contact import first_contact, set_gap
 from vibro_sweep.engine.motion.orbits import (
     advance,
@@ -95,6 +96,7 @@ def impact(f, stops, o, records, t, k, s, side, sin, cos):
     before = X[1]
     log_impact(o, records, k, s, side, before, X)
     count_impact(o, side, before)
+    add_impact(records.sums, R, before)
     X[1] = -R * before
     for j in range(1, len(o.c)):
         if q.push[j] != 0.0:
@@ -122,6 +124,7 @@ def end_chatter(q, stops, o, records, k, s, side, w):
     X, wall = o.X, wall_of(stops, side)
     o.resting, X[0] = side, wall
     take_samples(o, records, k, s, s + w)
+    add_flight(records.sums, o, w)
     advance(o, w)
     for j in range(1, len(o.c)):
         X[2 * j + 1] -= q.kappa[j] * (X[0] - wall)
@@ -211,6 +214,7 @@ def cross_cell(f, stops, o, records, t, k, s):
         if d != d:
             return status.UNRESOLVED
         take_samples(o, records, k, s, s + min(d, left))
+        add_flight(records.sums, o, min(d, left))
         if q.exact:
             advance_exactly(o, min(d, left))
         else:

@@ -105,6 +105,7 @@ class Records(NamedTuple):
     rests: np.ndarray  # (m, 4): period, cell, offset, side at the onset of a rest, 0 at its end
     times: np.ndarray  # (m, 2): cell and offset in this period at which the motion is sampled
     samples: np.ndarray  # (m, 2 N)
+    sums: np.ndarray | None  # (1,) `sums_of` (energy_sums.py)
 
 
 def new_records(orbits: int, impacts: int = 0, rests: int = 0, samples: int = 0, masses: int = 2) -> Records:
@@ -114,6 +115,7 @@ def new_records(orbits: int, impacts: int = 0, rests: int = 0, samples: int = 0,
         np.empty((orbits, rests, 4)),
         np.empty((samples, 2)),
         np.empty((samples, 2 * masses)),
+        None,
     )
 
 

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from vibro_sweep.engine.motion.energy_sums import add_flight
 from vibro_sweep.engine.motion.first_contact import first_contact, set_gap
 from vibro_sweep.engine.motion.orbits import add_change, restitution_of, take_samples
 from vibro_sweep.engine.simd.jit import jit
@@ -123,6 +124,7 @@ def stay_at_rest(f, o, records, t, k, s, sin, cos, most):
         d = first_release(o, left, most)
         end = min(d, left)
         take_samples(o, records, k, s + w, s + w + end)
+        add_flight(records.sums, o, end)
         if q.exact:
             w, w_low = add(w, w_low, end, 0.0)
         else:

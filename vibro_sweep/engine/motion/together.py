@@ -71,4 +71,4 @@ def stops_of(o):
 def records_of(e, o):
     """The records of an orbit."""
     n = o.lane
-    return Records(e.records.impacts[n], e.records.rests[n], e.records.times, e.records.samples)
+    return Records(e.records.impacts[n], e.records.rests[n], e.records.times, e.records.samples, e.records.sums)
