@@ -1,4 +1,4 @@
-"""Contacts that last: a series of the slow motion takes the place of thousands of the fast one.
+"""Contacts that last, or have a fast mode beside them: a series of the slow motion takes the place of thousands.
 
 The exponents of a mass that never leaves the stop are those of a linear oscillator; contacts that end are compared with
 those in many digits.
@@ -7,6 +7,8 @@ those in many digits.
 import numpy as np
 import pytest
 from mpmath import mp, mpf
+from reference.events import simulate
+from reference.machine import machine_of
 from support import compliant_exponents, sample, slow_cases
 
 import vibro_sweep as vs
@@ -65,6 +67,44 @@ def test_exponents_of_long_contacts_that_end(masses, k, z, release):
     report = compliant_exponents.compared_at([0.1], system)
     assert report.period and report.share > 0.25
     assert np.all(report.errors <= 3 * report.stated) and report.stated.max() < 1e-11
+
+
+def circuit(L, **numbers):
+    """A mass that drives a circuit with a small inductance L: a damped mode 2/L times as fast as the others."""
+    given = dict(force=[0.3, 0], omega=1.1, tau=0.0, contact_normal=[1, 0], b=0.3, stops="right", k_stop=25, c_stop=0.2)
+    return vs.Oscillator(
+        [[1, 0], [0, L]], [[1.3, -1], [-1, 10 / 3]], [[0.02, 0], [0, 2]], **(given | numbers)
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("L", [1e-2, 1e-3, *slow_cases(1e-4)])
+@pytest.mark.parametrize(
+    "law", [{}, {"k_stop": 5, "c_stop": 1, "release": "force"}, {"k_stop": 1e3, "c_stop": 3, "preload": 0.1}]
+)
+def test_contacts_beside_a_fast_damped_mode(L, law):
+    """Against a flight in thirty digits; the fast mode fades in each contact, and the slow motion is followed alone."""
+    system = circuit(L, **law)
+    true = simulate(machine_of(system.linear), [0, 0, 0, 0], contacts=3, digits=30).contacts
+    for found, contact in zip(vs.simulate(system, [0, 0, 0, 0], 8).contacts, true, strict=False):
+        assert found["t_touch"] == pytest.approx(float(contact.t_touch), abs=5e-15)
+        assert found["t_release"] == pytest.approx(float(contact.t_release), abs=5e-15)
+        assert found["v_release"] == pytest.approx(float(contact.v_release), rel=5e-15)
+        assert found["max_force"] == pytest.approx(float(contact.max_force), rel=5e-15)
+
+
+@pytest.mark.parametrize("L", [1e-2, 1e-5])
+@pytest.mark.parametrize("k, c", [(25, 0.2), (400, 4), (25, 60)])
+def test_exponents_of_a_mass_on_its_stop_beside_a_fast_damped_mode(L, k, c):
+    """The one of the fast mode is -inf where a flight over a cell takes it below the rounding of the others."""
+    system = circuit(L, constant=[5, 0], k_stop=k, c_stop=c)
+    data = vs.sweep(
+        system, {"omega": [1.1]}, start=[0.0] * 4, transient=600, record=20, workers=1, observe=["lyapunov", "contacts"]
+    ).isel(omega=0)  # fmt: skip
+    assert data.status == 0 and data.contact_time == pytest.approx(1, abs=1e-11)
+    count = 4 if L == 1e-2 else 3
+    exact, found = exponents(system)[:count], data.lyapunov.values[:count]
+    assert np.all(np.abs(found - exact) <= 1e-12 * np.abs(exact))
+    assert np.all(np.abs(found - exact) <= data.lyapunov_error.values[:count])
 
 
 def test_samples_of_long_contacts():

@@ -47,19 +47,30 @@ def keep_finer(law, o, q):
 
 
 @inline
-def is_close(law, o, width):
+def is_close(law, o, q):
     """Whether the orbit, at a node, has just left a stop and may come back to it from so near that all digits of the
     gap are needed."""
     if law is not None:
-        return is_close_to_stop(law.orbits[o.lane], o, width)
+        return is_close_to_stop(law.orbits[o.lane], o, q)
     return False
 
 
 @jit
-def is_close_to_stop(contact, o, width):
+def is_close_to_stop(contact, o, q):
     """`is_close` where some stops are compliant."""
     if o.cell == o.base and o.period * o.cells + o.cell <= contact.close_until:
         for n in range(2):
-            if abs(o.X[0] - o.stops[n]) < contact.near[n] and abs(o.X[1]) * width < contact.near[n]:
+            near, speed = contact.near[n], abs(o.X[1])
+            if abs(o.X[0] - o.stops[n]) < near and speed * q.width < near and stays_near(q, o.X, speed, near):
                 return True
     return False
+
+
+@jit
+def stays_near(q, X, speed, near):
+    """Whether a flight from the state X may turn back before it has gone so far: by its acceleration, and by what that
+    may become in a part of a period."""
+    a = 0.0
+    for j in range(len(q.force)):
+        a += q.force[j] * X[j]
+    return speed * speed <= 2.0 * near * (abs(a) + q.omega * speed)

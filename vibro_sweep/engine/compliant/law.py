@@ -127,10 +127,12 @@ def set_law(law, i, point, q):
         contact.preload[n] = point.contact_preload[n]
         step = min(width, WIDTH / point.contact_rate[n]) if contact.compliant[n] else width
         contact.step[n] = np.float32(step)
-        contact.relaxed[n], contact.apart[2 * n], contact.apart[2 * n + 1] = 0.0, 0, 0
+        contact.relaxed[n] = 0.0
         contact.near[n] = NEAR * (abs(point.stops[n]) + q.largest) if contact.compliant[n] else 0.0
         contact.trace[n] = fill_equations(contact.equations[n], point, 2.0 * n - 1.0, n)
     contact.pressed, contact.entered, contact.watched, contact.row = 0.0, False, False, -1
+    for part in range(len(contact.apart)):
+        contact.apart[part] = 0
     contact.close_until, contact.touched_last = -1, 0
     set_passage(law.passage[0], i, contact, point, q)
 

@@ -48,21 +48,23 @@ def is_open(law, e, o, k, readings):
     if law is not None:
         alone = law.log.shape[1] > 0 or len(e.records.times) > 0 or e.records.impacts.shape[1] > 0
         read = readings.parts > 0 and (o.done + 1) * readings.parts >= (o.read + 1) * o.periods
-        return not alone and is_open_to(law.orbits[o.lane], law.passage[0], o, k, e.strike[0].width[o.lane], read)
+        return not alone and is_open_to(
+            law.orbits[o.lane], law.passage[0], o, k, e.flights.oscillator[o.table, 0], read
+        )
     return True
 
 
 @jit
-def is_open_to(contact, passage, o, k, width, read):
+def is_open_to(contact, passage, o, k, q, read):
     """`is_open` where some stops are compliant: those with stops that still relax go alone, and those that single
     contacts are kept of. Sets how long a contact may last: over the section, if nothing but the state is `read` there.
     """
     i = o.lane
     if contact.relaxed[0] > 0.0 or contact.relaxed[1] > 0.0:
-        bring_stops(contact, o, k, 0.0, width)
+        bring_stops(contact, o, k, 0.0, q.width)
     passage.watched = contact.watched
     passage.finer[i] = finer_at(o, k)
-    passage.close[i] = int(is_close_to_stop(contact, o, width))
+    passage.close[i] = int(is_close_to_stop(contact, o, q))
     passage.ahead[i] = o.cells - k
     passage.last[i] = passage.ahead[i] + (o.cells if o.done + 1 < o.goal and not read else 0)
     return not (contact.relaxed[0] > 0.0 or contact.relaxed[1] > 0.0)

@@ -81,7 +81,8 @@ def stay_in_contact(law, f, stops, o, records, t, k, s):
         if steps > MOST_STEPS or (steps % BETWEEN_LOOKS == 0 and law.halt[0] != 0):
             return TOO_MANY
         left, step = q.width - s - w, contact.step[n]
-        if contact.fast > 0 or (steps % BETWEEN_TRIES == 0 and left > BETWEEN_TRIES * step):
+        goes_on = steps == 1 and not contact.entered
+        if contact.fast > 0 or ((goes_on or steps % BETWEEN_TRIES == 0) and left > BETWEEN_TRIES * step):
             carried = try_slow_motion(contact, o, t, q, k, s, w, carried)
         if contact.fast > 0:
             step = slow_step(contact, n, contact.fast)

@@ -1,8 +1,9 @@
-"""The two motions of a contact: that of delta and delta', which is fast, and that of what changes slowly beside them.
+"""The two motions of a contact: one that is fast, and that of what changes slowly beside it.
 
-With x = (delta', delta, w2, w2', ..., sin, cos, 1), of which f = (delta', delta) is fast, or f = delta' alone where the
-stop is so strongly damped that delta creeps, and q is the rest, a contact is f' = A f + B q, q' = C f + D q. Chang's
-transformation sets the two motions apart:
+With x = (delta', delta, w2, w2', ..., sin, cos, 1), of which f is fast and q is the rest, a contact is f' = A f + B q,
+q' = C f + D q. Fast are both delta' and delta (`BOTH`); or delta' alone, where the stop is so strongly damped that
+delta creeps (`SPEED`); or the velocity of the other mass that is damped most (`OTHER`), which then changes places with
+delta' in x. Chang's transformation sets the two motions apart:
 
     f = phi + L q          A L + B = L S            S = D + C L
     q = chi + H phi        C + S H = H F            F = A - L C
@@ -18,46 +19,66 @@ import numpy as np
 
 from vibro_sweep.engine.simd.jit import inline, jit
 
+SPEED, BOTH, OTHER = 1, 2, 3  # what is fast
 ROUNDS = 60  # of an iteration
 SAME = 2.0**-50  # between two rounds, of the size: the next one is as exact as it gets
 
 
 def slow_manifold_fields(masses: int) -> list:
-    """The fields of `law_of` for them: of the left stop with one fast coordinate and with two, and of the right one."""
+    """The fields of `law_of` for them: of the left stop with what may be fast, and of the right one."""
     n = 2 * masses + 3
     return [
-        ("apart", np.int64, 4),  # 1: they are set apart, -1: they cannot be, 0: not known yet
-        ("slow_rate", float, 4),  # about how fast the slow motion is
-        ("S", float, (4, n, n)),
-        ("L", float, (4, 2, n)),
-        ("H", float, (4, n, 2)),
-        ("F", float, (4, 2, 2)),
-        ("bend", float, (4, n)),  # delta'' of the slow motion, by q: the row of delta' of L S
+        ("apart", np.int64, 6),  # 1: they are set apart, -1: they cannot be, 0: not known yet
+        ("slow_rate", float, 6),  # about how fast the slow motion is
+        ("S", float, (6, n, n)),
+        ("L", float, (6, 2, n)),
+        ("H", float, (6, n, 2)),
+        ("F", float, (6, 2, 2)),
+        ("bend", float, (6, n)),  # delta'' of the slow motion, by q: the row of delta' of L S
         ("whole", float, (n, n)),  # x' = whole x, of one of them
         ("old", float, (n, n)),  # what is replaced
         ("term", float, (2, n)),  # of a series of q
-        (
-            "fast",
-            np.int64,
-        ),  # coordinates of the motion that has died away, and is left out; or 0
+        ("fast", np.int64),  # of the motion that has died away, and is left out; 0: none
     ]
 
 
 @inline
-def part_of(n, fast):
-    """The place of the fields of stop n with so many fast coordinates."""
-    return 2 * n + fast - 1
+def part_of(n, kind):
+    """The place of the fields of stop n where this is fast."""
+    return 3 * n + kind - 1
+
+
+@inline
+def count_of(kind):
+    """How many coordinates are fast."""
+    return 2 if kind == BOTH else 1
 
 
 @jit
-def is_set_apart(contact, n, fast, omega):
+def other_speed(contact, n, kind):
+    """The place of the velocity that changes places with delta' in x; 0: none does."""
+    place = 0
+    if kind == OTHER:
+        G = contact.equations[n]
+        for m in range(1, len(G)):
+            if place == 0 or G[m, 2 * m + 1] < G[place // 2, place]:
+                place = 2 * m + 1
+    return place
+
+
+@jit
+def is_set_apart(contact, n, kind, omega):
     """Whether the two motions can be set apart; they are, the first time that this is asked."""
-    part = part_of(n, fast)
+    part, fast = part_of(n, kind), count_of(kind)
+    if kind == OTHER and len(contact.push) < 2:
+        return False
     if contact.apart[part] == 0:
-        fill_whole(contact, n, omega)
+        other = other_speed(contact, n, kind)
+        fill_whole(contact, n, omega, other)
         found = set_slow(contact, part, fast) and set_share(contact, part, fast)
         contact.apart[part] = 1 if found else -1
-        contact.slow_rate[part] = slow_rate_of(contact, contact.S[part], fast, omega)
+        creeping = 1 if kind == SPEED else max(other - 1, 0)
+        contact.slow_rate[part] = slow_rate_of(contact, contact.S[part], creeping, omega)
         for j in range(fast, len(contact.whole)):
             contact.bend[part, j] = 0.0
             for e in range(fast, len(contact.whole)):
@@ -66,7 +87,14 @@ def is_set_apart(contact, n, fast, omega):
 
 
 @jit
-def fill_whole(contact, n, omega):
+def exchange(x, other):
+    """Let delta' and another velocity change places, where there is one."""
+    if other > 0:
+        x[0], x[other] = x[other], x[0]
+
+
+@jit
+def fill_whole(contact, n, omega, other):
     """x' = whole x."""
     G, whole, masses = contact.equations[n], contact.whole, len(contact.push)
     states, size = 2 * masses, len(contact.whole)
@@ -80,6 +108,11 @@ def fill_whole(contact, n, omega):
         for j in range(2, size):
             whole[rate, j] = G[m, j]
     whole[states, states + 1], whole[states + 1, states] = omega, -omega
+    if other > 0:
+        for i in range(size):
+            exchange(whole[i], other)
+        for j in range(size):
+            whole[0, j], whole[other, j] = whole[other, j], whole[0, j]
 
 
 @jit
@@ -164,20 +197,19 @@ def set_share(contact, part, fast):
 
 
 @jit
-def slow_rate_of(contact, S, fast, omega):
-    """About how fast the slow motion is: from the rows of w2', ... of S, and of delta where it creeps."""
-    states, rate = len(contact.y), omega
+def slow_rate_of(contact, S, creeping, omega):
+    """About how fast the slow motion is: from the rows of velocities of S, and of the place that creeps, 0: none."""
+    states, rate, creep = len(contact.y), omega, 0.0
+    first = 1 if creeping > 0 else 2
     for m in range(1, len(contact.push)):
         stiff = damped = 0.0
-        for j in range(fast, states):
+        for j in range(first, states):
             if j % 2 == 1 and j > 1:
                 damped += abs(S[2 * m + 1, j])
             else:
                 stiff += abs(S[2 * m + 1, j])
         rate = max(rate, math.sqrt(stiff) + damped)
-    if fast == 1:
-        creep = 0.0
+    if creeping > 0:
         for j in range(1, states):
-            creep += abs(S[1, j])
-        rate = max(rate, creep)
-    return rate
+            creep += abs(S[creeping, j])
+    return max(rate, creep)

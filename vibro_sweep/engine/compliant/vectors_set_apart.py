@@ -10,7 +10,7 @@ the stop, and r that of all else, tr F = -(c + r) - tr S, where c may be larger 
 import math
 
 from vibro_sweep.engine.compliant.contact_vectors import put_after, set_before
-from vibro_sweep.engine.compliant.slow_manifold import part_of
+from vibro_sweep.engine.compliant.slow_manifold import count_of, exchange, other_speed, part_of
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.tables.flight import ORDER
 from vibro_sweep.engine.tables.twofold import add, multiply
@@ -34,10 +34,10 @@ def vectors_fields(masses: int) -> list:
 
 
 @jit
-def set_vectors_apart(t, i, contact, side, n, fast):
+def set_vectors_apart(t, i, contact, side, n, kind):
     """phi and chi of the vectors, of the last ones without those of the first. Returns whether digits are left."""
-    parted, taken, L, H = contact.parted, contact.taken, contact.L[part_of(n, fast)], contact.H[part_of(n, fast)]
-    states, before = len(parted), contact.before
+    parted, taken, L, H = contact.parted, contact.taken, contact.L[part_of(n, kind)], contact.H[part_of(n, kind)]
+    states, before, fast = len(parted), contact.before, count_of(kind)
     slow = states - fast
     if t.lost[i] > 0.0:
         return False
@@ -45,6 +45,7 @@ def set_vectors_apart(t, i, contact, side, n, fast):
     for j in range(states):
         set_before(t, i, contact, side, j)
         before[0], before[1] = before[1], before[0]
+        exchange(before, other_speed(contact, n, kind))
         for a in range(fast):
             for e in range(fast, states):
                 before[a] -= L[a, e] * before[e]
@@ -113,10 +114,11 @@ def fast_flight(F, fast, u):
 
 
 @jit
-def fly_vectors_apart(t, i, contact, side, n, fast, u):
+def fly_vectors_apart(t, i, contact, side, n, kind, u):
     """The vectors after the time u."""
-    part, parted, taken, states = part_of(n, fast), contact.parted, contact.taken, len(contact.parted)
+    part, parted, taken, states = part_of(n, kind), contact.parted, contact.taken, len(contact.parted)
     S, L, H, F, after = contact.S[part], contact.L[part], contact.H[part], contact.F[part], contact.after
+    fast = count_of(kind)
     slow = states - fast
     decay, c, s, gamma = fast_flight(F, fast, u)
     det = parted[0, slow]
@@ -156,6 +158,7 @@ def fly_vectors_apart(t, i, contact, side, n, fast, u):
         for a in range(fast):
             for e in range(fast, states):
                 after[a] += L[a, e] * after[e]
+        exchange(after, other_speed(contact, n, kind))
         after[0], after[1] = after[1], after[0]
         put_after(t, i, contact, side, j)
     t.mixed[i] = 1.0

@@ -89,7 +89,7 @@ def resolve_events(e, o, f, readings):
             end_period_here(e, o, f, readings)
             return
     while True:
-        events, rested = o.events, o.offset > 0.0 or o.resting != 0.0 or is_close(e.law, o, q.width)
+        events, rested = o.events, o.offset > 0.0 or o.resting != 0.0 or is_close(e.law, o, q)
         o.status = cross(e.law, f, stops_of(o), o, records_of(e, o), e.tangent[0], o.cell, o.offset)
         free = not (rested or o.events > events)
         o.cell += 1
@@ -149,7 +149,7 @@ def find_candidate(e, o, f, readings):
 
     The last section is left to `advance_to_candidates`.
     """
-    if is_close(e.law, o, f.oscillator[0].width):
+    if is_close(e.law, o, f.oscillator[0]):
         o.candidate = o.cell
         return
     o.candidate = first_candidate(f, o)
