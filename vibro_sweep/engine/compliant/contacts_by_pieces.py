@@ -1,8 +1,8 @@
 """Eight contacts at once, by their tables (contact_pieces.py): when they end, in what state, and the largest in them.
 
 The root of the guard is sought in the piece at whose end it is below zero for the first time. It is the first root for
-certain where the guard's control points up to that piece are positive, and where it falls within the piece, or bends
-down. Other contacts are left alone.
+certain where the guard's control points up to that piece are positive, and where its Taylor polynomial about the root,
+with a bound on what that leaves out, is positive within the piece. Other contacts are left alone.
 """
 
 import math
@@ -27,6 +27,7 @@ from vibro_sweep.engine.simd.memory import put, row
 
 LOOKS = 5  # at a root, each followed by a step of fourth order
 CLOSE = 2.0**-54  # fourth power of a step, of the length of a piece, whose error is rounding
+REMAINDER = 1.0 / 20.0  # of the fourth derivative: 1/24, and what the last step changed of the third
 ROUGH = 7  # terms of a first look at a peak
 PEAK_LOOKS = 8
 NEAR_PEAK = 1e-3  # of the length of a piece: a step whose error in the largest value is rounding
@@ -184,7 +185,7 @@ def end_in_piece(passage, z, n, p, who, sign):
     square = slope * slope - 4.0 * f * curve
     v = 2.0 * f / (math.sqrt(select(square > 0.0, square, 0.0)) - slope)
     v = select(v <= most, select(v >= least, v, least), most)
-    wanted, found = who, who & ~who
+    wanted, found, bend = who, who & ~who, 0.0 * v
     for _ in range(LOOKS):
         g, slope, half_curve, sixth = derivatives(end, v, TERMS)
         inverse = 1.0 / slope
@@ -193,6 +194,7 @@ def end_in_piece(passage, z, n, p, who, sign):
         wanted = wanted & (slope < 0.0) & (after >= least) & (after <= most)
         step = after - v
         v, curve = select(wanted, after, v), select(wanted, half_curve + 3.0 * step * sixth, curve)
+        bend = select(wanted, sixth, bend)
         left = newton * (abs(bent) + 1.0 / h)
         left = left * left
         now = wanted & (left * left <= CLOSE)
@@ -201,7 +203,7 @@ def end_in_piece(passage, z, n, p, who, sign):
             break
     u, length = v + p * h, v if p == 0 else v + 0.5 * h
     _, slope = value_and_slope(end, 0, v)
-    passed = found & goes_one_way(end, slope, curve, length, most) & (u > 0.0)
+    passed = found & is_positive_within(end, slope, curve, bend, length, most) & (u > 0.0)
     if p > 0:
         passed = passed & (by_force | is_positive_before(passage, PLACE, n, p, z, passed & ~by_force))
         if forced:
@@ -212,8 +214,8 @@ def end_in_piece(passage, z, n, p, who, sign):
         place, speed = select(by_force, there, place), select(by_force, rate, speed)
     preloaded = passed & by_force & (preload > 0.0)
     if bits(preloaded) != 0:  # the mass may not leave the stop before the force is zero
-        _, slope, half_curve, _ = derivatives(passage.now, v, TERMS)
-        inside = goes_one_way(passage.now, slope, half_curve, length, most) & (place > 0.0)
+        _, slope, half_curve, sixth = derivatives(passage.now, v, TERMS)
+        inside = is_positive_within(passage.now, slope, half_curve, sixth, length, most) & (place > 0.0)
         if p > 0:
             inside = inside & is_positive_before(passage, PLACE, n, p, z, preloaded)
         passed = passed & (~preloaded | inside)
@@ -235,15 +237,18 @@ def load_guard(passage, n, p, by_force):
 
 
 @inline
-def goes_one_way(c, slope, half_curve, length, most):
-    """Whether a polynomial with this slope and this half curvature at a point falls, or bends down, all over the
-    `length` before it."""
-    third = 0.0 * slope
-    for e in range(TERMS - 1, 2, -1):
-        third = third * most + (e * (e - 1.0) * (e - 2.0)) * abs(row(c, e))
-    bend = select(half_curve < 0.0, -2.0 * half_curve, 0.0)
-    falls = slope + length * (bend + 0.5 * third * length) < 0.0
-    return falls | (2.0 * half_curve + third * length < 0.0)
+def is_positive_within(c, slope, half_curve, sixth, length, most):
+    """Whether a polynomial is positive, for certain, all over the `length` before its root at v, where it is where that
+    begins; or above its value at v, which is positive. The derivatives are those at v.
+
+    c(v - w)/w = -slope + half_curve w - sixth w^2 +- fourth w^3/24; or it bends down all the way.
+    """
+    fourth = 0.0 * slope
+    for e in range(TERMS - 1, 3, -1):
+        fourth = fourth * most + (e * (e - 1.0) * (e - 2.0) * (e - 3.0)) * abs(row(c, e))
+    fall = select(half_curve < 0.0, half_curve, 0.0) - select(sixth > 0.0, sixth, 0.0) * length
+    rising = -slope + length * (fall - fourth * length * length * REMAINDER) > 0.0
+    return rising | (2.0 * half_curve + length * (6.0 * abs(sixth) + fourth * length) < 0.0)
 
 
 @inline
