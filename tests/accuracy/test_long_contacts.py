@@ -107,6 +107,30 @@ def test_exponents_of_a_mass_on_its_stop_beside_a_fast_damped_mode(L, k, c):
     assert np.all(np.abs(found - exact) <= data.lyapunov_error.values[:count])
 
 
+@pytest.mark.slow
+def test_growth_beside_a_mass_that_is_held_and_damped_strongly():
+    """Of a chaotic orbit whose contacts end: the first exponent against the distance of two orbits, from a time on at
+    which all directions have turned into the one that grows most."""
+    masses, periods, record = (0.7013, 2.188, 1.488), 40, 40
+    system = vs.Oscillator(
+        np.diag(masses), [[3.538, -1.102, 1.304], [-1.102, 1.087, 1.47], [1.304, 1.47, 3.407e9]],
+        [[0.07076, -0.02205, 0.02609], [-0.02205, 0.02174, 0.0294], [0.02609, 0.0294, 2.136e6]],
+        contact_normal=[-0.7291, -1.036, 0.2231], force=[-0.8169, 1.347, 1.208], omega=1.923, tau=1.155, b=0.09109,
+        stops="right", k_stop=121400,
+    )  # fmt: skip
+    state = np.array([-0.0104, -0.7588, -0.01479, -0.1239, 0.003184, 0.0])
+    states, growth = vs.simulate(system, state, periods + record).section, 0.0
+    aside = np.array([1.0, 0, 0, 0, 0, 0])
+    for n in range(periods + record):
+        two = [vs.simulate(system, states[n] + sign * 1e-7 * aside, 1).section[-1] for sign in (1, -1)]
+        aside = (two[0] - two[1]) / 2e-7
+        aside[4:] = 0.0  # rounding of a mass that hardly moves
+        length = np.linalg.norm(aside)
+        growth, aside = growth + np.log(length) * (n >= periods), aside / length
+    found = vs.lyapunov(system, state, periods, record)[0]
+    assert found == pytest.approx(growth / (record * system.period), abs=1.5e-3)
+
+
 def test_samples_of_long_contacts():
     """Samples do not ask whether the fast motion is followed; they join the states at the sections."""
     system = chain(1, 1e6, 1.0, "force", force=[6], constant=[2])
