@@ -58,6 +58,7 @@ def piece_fields(masses: int) -> list:
     size, inputs = 2 * masses + 3, 2 * masses + 2
     return [
         ("length", float, (2, LANES)),  # h
+        ("pull", float, (2 * 2 * masses, LANES)),  # delta'', w2'', ... by delta and by delta'
         ("mirrored", float, (LANES,)),  # 1: contacts with the left stop take the tables of the right one
         ("course", float, (2 * PIECES * size * TERMS, LANES)),  # of delta; in piece 0 of delta/u, but for a unit delta
         ("others", float, (2 * PIECES * (masses - 1) * size * TERMS, LANES)),  # of w2, ... beside w + w' u
@@ -112,6 +113,9 @@ def fill_pieces(passage, n, i, contact, omega):
     """The tables of contacts with stop n of orbit i."""
     masses, states, h = len(contact.push), len(contact.y), passage.length[n, i]
     size, A = states + 3, passage.A
+    for m in range(masses):
+        for j in range(2):
+            passage.pull[2 * (n * masses + m) + j, i] = contact.equations[n, m, j]
     D, E, joined = passage.flights[0], passage.flights[1], passage.flights[2]
     clear(A), clear(E)
     for m in range(masses):

@@ -100,6 +100,37 @@ def set_flight(passage, who, right, time):
                 turned, at_place = sign if e < 2 else 0.0 * sign + 1.0, 2 * m * states + e
                 put(E, at_place, select(now, turned * x, row(E, at_place)))
                 put(E, at_place + states, select(now, turned * slope, row(E, at_place + states)))
+        keep_digits(passage, now, n, at, p, v, time, sign)
+
+
+@noinline
+def keep_digits(passage, who, n, at, p, v, time, sign):
+    """What a unit delta' makes of delta, which is small at a release, from what is zero there; and delta' from these.
+
+    V E_01 + (what all other inputs make of delta) = 0, or k delta + c delta' + p = 0; and E A = A E.
+    """
+    E, touch, inputs, states = passage.flight, passage.touch, len(passage.touch), len(passage.y)
+    masses, k, c = len(passage.push), row(passage.stiffness, n), row(passage.damping, n)
+    by_force, first = row(passage.by_force, n) > 0.0, 2 * n * masses
+    delta, speed = 0.0 * v, 0.0 * v
+    for e in range(1, inputs):
+        x, slope = value_and_slope(passage.course, (at * (inputs + 1) + e) * TERMS, v)
+        if p == 0:
+            x, slope = time * x, x + time * slope
+        delta, speed = delta + x * row(touch, e), speed + slope * row(touch, e)
+    back, ahead = 0.0 * v, row(E, 0)  # of E_10 and E_11 what does not come from E_01
+    for m in range(1, masses):
+        other = sign * row(E, 2 * m + 1)
+        back = back + other * row(passage.pull, first + 2 * m)
+        ahead = ahead + other * row(passage.pull, first + 2 * m + 1)
+    damping = row(passage.pull, first + 1)
+    share, total = select(by_force, k + c * damping, 1.0), select(by_force, k * delta + c * speed, delta)
+    total = total + select(by_force, c * ahead * row(touch, 0) + row(passage.preload, n), 0.0)
+    small = -total / (share * row(touch, 0))
+    who = who & (~by_force | (abs(c * damping) < 0.5 * k))
+    put(E, 1, select(who, small, row(E, 1)))
+    put(E, states, select(who, small * row(passage.pull, first) + back, row(E, states)))
+    put(E, states + 1, select(who, small * damping + ahead, row(E, states + 1)))
 
 
 @inline
