@@ -92,3 +92,15 @@ def test_exponents_where_a_mass_rests_on_the_rigid_stop():
     turned = np.linalg.lstsq(once @ plane.T, twice @ plane.T)[0]
     expected = np.log(np.abs(np.linalg.eigvals(turned))) * system.omega / (2 * np.pi)
     assert np.sort(row.lyapunov.values[:2]) == pytest.approx(np.sort(expected), abs=1e-3)
+
+
+@pytest.mark.parametrize("k", [5.742e6, 1e8])
+def test_stiff_contacts_keep_the_digits_of_vectors(k):
+    """What a contact makes of delta' is small at the release: known to the rate in contact times 2^-53 alone, it would
+    move these exponents by 1e-14 to 1e-13 where the stiffness is rounded."""
+    system = vs.System(mu_m=10, mu_k=5, zeta=0.02, f2=0.1, omega=0.63, b=3, tau=0.3, k_stop=k)
+    found = [
+        np.asarray(vs.lyapunov(system.replace(k_stop=k * part), [0.1, 0.4, 0, 0.2], 4, 6))
+        for part in (1, 1 + 2.0**-52, 1 - 2.0**-52)
+    ]
+    assert np.abs(np.array(found[1:]) - found[0]).max() < 3e-15

@@ -86,6 +86,7 @@ def load_delta(passage, z, n, p):
 
 @noinline
 def times_u(c):
+    """From the polynomial of delta/u that of delta."""
     for e in range(TERMS, 0, -1):
         put(c, e, row(c, e - 1))
     put(c, 0, 0.0)
@@ -181,11 +182,11 @@ def end_in_piece(passage, z, n, p, who, sign):
         load_guard(passage, n, p, by_force)
         end = passage.end
     most, least = (0.5 * WIDER) * h, 0.0 * h if p == 0 else (-0.5 * WIDER) * h
-    f, slope, curve = row(end, 0), row(end, 1), row(end, 2)
-    square = slope * slope - 4.0 * f * curve
+    f, slope, half_curve_there = row(end, 0), row(end, 1), row(end, 2)
+    square = slope * slope - 4.0 * f * half_curve_there
     v = 2.0 * f / (math.sqrt(select(square > 0.0, square, 0.0)) - slope)
     v = select(v <= most, select(v >= least, v, least), most)
-    wanted, found, bend = who, who & ~who, 0.0 * v
+    wanted, found, sixth_there = who, who & ~who, 0.0 * v
     for _ in range(LOOKS):
         g, slope, half_curve, sixth = derivatives(end, v, TERMS)
         inverse = 1.0 / slope
@@ -193,8 +194,8 @@ def end_in_piece(passage, z, n, p, who, sign):
         after = v + newton * (1.0 - newton * (bent - newton * (2.0 * bent * bent - more)))
         wanted = wanted & (slope < 0.0) & (after >= least) & (after <= most)
         step = after - v
-        v, curve = select(wanted, after, v), select(wanted, half_curve + 3.0 * step * sixth, curve)
-        bend = select(wanted, sixth, bend)
+        v, sixth_there = select(wanted, after, v), select(wanted, sixth, sixth_there)
+        half_curve_there = select(wanted, half_curve + 3.0 * step * sixth, half_curve_there)
         left = newton * (abs(bent) + 1.0 / h)
         left = left * left
         now = wanted & (left * left <= CLOSE)
@@ -203,7 +204,8 @@ def end_in_piece(passage, z, n, p, who, sign):
             break
     u, length = v + p * h, v if p == 0 else v + 0.5 * h
     _, slope = value_and_slope(end, 0, v)
-    passed = found & is_positive_within(end, slope, curve, bend, length, most) & (u > 0.0)
+    certain = is_positive_within(end, slope, half_curve_there, sixth_there, length, most)
+    passed = found & certain & (u > 0.0)
     if p > 0:
         passed = passed & (by_force | is_positive_before(passage, PLACE, n, p, z, passed & ~by_force))
         if forced:

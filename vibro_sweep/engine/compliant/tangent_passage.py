@@ -107,17 +107,19 @@ def set_flight(passage, who, right, time):
 def keep_digits(passage, who, n, at, p, v, time, sign):
     """What a unit delta' makes of delta, which is small at a release, from what is zero there; and delta' from these.
 
-    V E_01 + (what all other inputs make of delta) = 0, or k delta + c delta' + p = 0; and E A = A E.
+    V E_01 + (what all other inputs make of delta) = 0, or k delta + c delta' + p = 0; and E A = A E. Where V is small
+    beside these inputs their sum has fewer digits than the tables.
     """
     E, touch, inputs, states = passage.flight, passage.touch, len(passage.touch), len(passage.y)
     masses, k, c = len(passage.push), row(passage.stiffness, n), row(passage.damping, n)
     by_force, first = row(passage.by_force, n) > 0.0, 2 * n * masses
-    delta, speed = 0.0 * v, 0.0 * v
+    delta, speed, size = 0.0 * v, 0.0 * v, 0.0 * v
     for e in range(1, inputs):
         x, slope = value_and_slope(passage.course, (at * (inputs + 1) + e) * TERMS, v)
         if p == 0:
             x, slope = time * x, x + time * slope
         delta, speed = delta + x * row(touch, e), speed + slope * row(touch, e)
+        size = size + abs(x * row(touch, e))
     back, ahead = 0.0 * v, row(E, 0)  # of E_10 and E_11 what does not come from E_01
     for m in range(1, masses):
         other = sign * row(E, 2 * m + 1)
@@ -127,7 +129,7 @@ def keep_digits(passage, who, n, at, p, v, time, sign):
     share, total = select(by_force, k + c * damping, 1.0), select(by_force, k * delta + c * speed, delta)
     total = total + select(by_force, c * ahead * row(touch, 0) + row(passage.preload, n), 0.0)
     small = -total / (share * row(touch, 0))
-    who = who & (~by_force | (abs(c * damping) < 0.5 * k))
+    who = who & (size < row(passage.length, n) * row(touch, 0)) & (~by_force | (abs(c * damping) < 0.5 * k))
     put(E, 1, select(who, small, row(E, 1)))
     put(E, states, select(who, small * row(passage.pull, first) + back, row(E, states)))
     put(E, states + 1, select(who, small * damping + ahead, row(E, states + 1)))
