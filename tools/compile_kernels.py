@@ -63,9 +63,8 @@ def of_masses(n: int, **numbers):
 KINDS: dict[str, tuple[Callable[[], Any], tuple[Callable[[Any], None], ...]]] = {
     "two masses, compliant": (lambda: of_masses(2, **COMPLIANT), (sweep, trajectory, branch)),
     "three masses": (lambda: of_masses(3, **RIGID), (sweep, branch)),
-    "two masses": (lambda: of_masses(2, **RIGID), (sweep, trajectory, branch)),
+    "two masses": (lambda: vs.System(**PAPER, **RIGID), (sweep, trajectory, mapping, branch)),
     "one mass, compliant": (lambda: one_mass(**COMPLIANT), (sweep, trajectory, branch)),
-    "paper's": (lambda: vs.System(**PAPER, **RIGID), (sweep, trajectory, mapping)),
     "three masses, compliant": (lambda: of_masses(3, **COMPLIANT), (sweep, branch)),
     "one mass": (lambda: one_mass(**RIGID), (sweep, branch)),
     "two masses, rests": (lambda: of_masses(2, R=0.0), (branch,)),

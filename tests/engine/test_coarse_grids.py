@@ -1,4 +1,4 @@
-"""Coarse cells, small steps within them, fast modes bounded by their energy: as on a grid that resolves every rate."""
+"""Coarse cells, small steps within them, fast roots bounded: as on a grid that resolves every rate."""
 
 import numpy as np
 import pytest
@@ -18,7 +18,8 @@ def grid(monkeypatch):
         if cells is None:
             monkeypatch.setattr(tables, "MOST_CELLS", 10**6)
         else:
-            monkeypatch.setattr(tables, "cells_needed", lambda squares, *_: np.full(np.shape(squares)[:-1], cells))
+            monkeypatch.setattr(tables, "MOST_CELLS", 0)
+            monkeypatch.setattr(tables, "STIFF_CELLS", cells)
 
     return choose
 

@@ -17,11 +17,11 @@ from support.oscillators import PAPER
 import vibro_sweep as vs
 from vibro_sweep.analysis.single import orbit
 from vibro_sweep.engine import halting, points, simd
+from vibro_sweep.engine.any_points import grazing_points
 from vibro_sweep.engine.motion.ensemble import Mapping
 from vibro_sweep.engine.one_system import Engine, plan_of
 from vibro_sweep.engine.records import new_results, starts_at
 from vibro_sweep.engine.simd import jit
-from vibro_sweep.oscillator.paper_motion import expansion_point
 from vibro_sweep.tables import outcomes as status
 
 CHAOS = PAPER.replace(b=5.8)
@@ -70,9 +70,9 @@ def halted(plan, mapping=None):
     try:
         engine = Engine(CHAOS)
         if plan.order:
-            engine.point["graze"] = expansion_point(CHAOS.parameters(), None)
+            engine.point["graze"] = grazing_points(CHAOS.linear, None)
         nothing, starts = np.empty((1, 8, 0)), starts_at(np.tile(STATE, (2, 8, 1)))
-        workspace = points.new_workspace(plan, engine.cells, 0)
+        workspace = points.new_workspace(plan, engine.cells, 0, engine.kind)
         steps = np.ascontiguousarray(np.broadcast_to(engine.point, (1, 8)))
         kept = nothing[..., None], nothing, nothing[..., None]
         for periods in (1, AGES):  # compiled before that takes long

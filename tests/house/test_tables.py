@@ -11,11 +11,10 @@ from support.scene_texts import parsed
 import vibro_sweep as vs
 from vibro_sweep.checks.not_computed import ROWS
 from vibro_sweep.driver.blocks import plan_of
-from vibro_sweep.engine.records import POINT, new_results, result_of
+from vibro_sweep.engine.records import new_results, result_of
 from vibro_sweep.engine.simd.kernel_cache import ENGINE, SHARED
 from vibro_sweep.oscillator.catalogue import OF_A_SYSTEM
 from vibro_sweep.oscillator.models import MODELS
-from vibro_sweep.oscillator.models.two_mass import NAMES
 from vibro_sweep.oscillator.other_words import own_name
 from vibro_sweep.scene import resolved_numbers
 from vibro_sweep.tables.coordinates import MOST_MASSES
@@ -36,7 +35,7 @@ def test_the_page_on_your_machine_says_what_is_refused():
 
 def test_records_of_the_kernels_have_the_types_of_files():
     inside = [row for row in VARIABLES if row.in_kernel]
-    assert POINT.names[: len(NAMES)] == NAMES and len(inside) > 20
+    assert len(inside) > 20
     for row in inside:
         field, shape = result_of(2)[row.name], tuple(DIMENSIONS[name].extent for name in row.dimensions)
         assert (field.base, field.shape) == (np.dtype(row.dtype), shape)

@@ -19,7 +19,7 @@ def few(tmp_path_factory):
     """A file with 13 orbits: free, periodic on one side and both, chaotic."""
     path = tmp_path_factory.mktemp("windows") / "few.h5"
     b = [4.4, 5.2, 5.3, 5.33, 5.4, 5.6, 6.0, 6.35, 6.596, 6.6, 6.606, 6.664, 6.9]
-    vs.sweep(SYSTEM, {"b": b}, transient=1000, record=100, output=path, workers=1)
+    vs.sweep(SYSTEM, {"b": b}, transient=20_000, record=100, output=path, workers=1)
     return path
 
 

@@ -21,7 +21,6 @@ from vibro_sweep.engine.simd.kernel_cache import announce_count
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.oscillator.grid import linears
 from vibro_sweep.oscillator.own_time import in_own_time, in_users_time, with_velocities
-from vibro_sweep.oscillator.paper_motion import expansion_point
 from vibro_sweep.tables import outcomes as status
 from vibro_sweep.tables.coordinates import state
 from vibro_sweep.tables.observables import GAP
@@ -77,11 +76,7 @@ def _compute(block: Block) -> dict[str, np.ndarray]:
     announce_count([kernel for kernel, is_needed in needed.items() if is_needed])
     table, kind, rate = table_of(block.system, block.axes, frames=plan.lyapunov or plan.order > 0)
     if plan.order:
-        table["graze"] = (
-            expansion_point(block.parameters, block.expand_at)
-            if kind.paper
-            else grazing_points(in_own_time(linears(block.system, block.axes), rate), block.expand_at)
-        )
+        table["graze"] = grazing_points(in_own_time(linears(block.system, block.axes), rate), block.expand_at)
     starts = starts_of(block)
     n_starts = starts.shape[1]
     if block.follow:  # chains along the first axis, one for each point of the others
@@ -150,7 +145,7 @@ def _workspace(block: Block, kind: Kind, cells: int, orbits: int) -> points.Work
     key = (block.plan, block.samples, kind)
     if getattr(_local, "key", None) != key or _local.cells < cells or _local.orbits < orbits:
         _local.key = _local.workspace = None  # so that there are never two
-        _local.workspace = points.new_workspace(block.plan, cells, block.samples, orbits, kind)
+        _local.workspace = points.new_workspace(block.plan, cells, block.samples, kind, orbits)
         _local.key, _local.cells, _local.orbits = key, cells, orbits
     return _local.workspace
 

@@ -21,11 +21,12 @@ from vibro_sweep.engine.coordinates.contact import (
 from vibro_sweep.engine.coordinates.exact import exact_motion
 from vibro_sweep.engine.coordinates.exponentials import gap_exponentials
 from vibro_sweep.engine.coordinates.frame import frame_of
+from vibro_sweep.engine.coordinates.plain_points import machine_of, modes_of, set_plain_points
 from vibro_sweep.engine.records import Kind, point_of
 from vibro_sweep.engine.tables import cells
 from vibro_sweep.engine.tables.flight import WIDTH
 from vibro_sweep.oscillator.linear import MOTION, Linear, grazing_state, selected
-from vibro_sweep.oscillator.stacks import different, dot
+from vibro_sweep.oscillator.stacks import different, dot, unrepeated
 from vibro_sweep.oscillator.steady import gap_responses, steady_amplitudes
 
 APART = 8.0  # a rate over that of the force from which on tables are computed in twice the digits
@@ -38,21 +39,29 @@ def kind_of(q: Linear) -> Kind:
     """
     masses = q.normal.shape[-1]
     constant = masses == 1 or bool(np.any(q.constant) or np.any(origin_of(q)))
-    return Kind(masses, constant, False, bool(np.any(q.compliant)))
+    return Kind(masses, constant, bool(np.any(q.compliant)))
 
 
 def any_points(q: Linear, kind: Kind, frames: bool = True) -> np.ndarray:
     """Points of a stack of oscillators, tau resolved, of its shape. frames: whether tangent vectors are wanted."""
     shape, origin = q.omega.shape, origin_of(q)
-    q, origin = _flat(q), origin.reshape(-1, origin.shape[-1])
-    unlike, place = different(np.concatenate([_row(getattr(q, name)) for name in MOTION] + [origin], -1))
-    known = _points(selected(q, unlike), kind, frames)
-    result = known[place]
+    once = unrepeated([*(getattr(q, name) for name in MOTION), origin], len(shape))
+    few = _flat(Linear(*(one[once] for one in q)))
+    numbers = [getattr(few, name) for name in MOTION]
+    rows = np.concatenate([_row(one) for one in (*numbers, origin[once].reshape(few.normal.shape))], -1)
+    unlike, place = different(rows)
+    place = np.broadcast_to(place.reshape(q.omega[once].shape), shape)
+    result = _repeated(_points(few, rows[unlike], unlike, kind, frames), place)
     low, high = (distance(q, origin, gap) for gap in (q.low, q.high))
     result["stops"] = np.stack([low, high, q.R_low, q.R_high], -1)
     if kind.compliant:
         _set_contact(result, q)
-    return result.reshape(shape)
+    return result
+
+
+def _repeated(points: np.ndarray, place: np.ndarray) -> np.ndarray:
+    """points[place], as bytes: NumPy copies records field by field."""
+    return points.view(np.uint8).reshape(len(points), -1)[place].view(points.dtype)[..., 0]
 
 
 def _flat(q: Linear) -> Linear:
@@ -96,9 +105,24 @@ def grazing_points(q: Linear, expand_at: float | None) -> np.ndarray:
     return result
 
 
+def _points(q: Linear, rows: np.ndarray, which: np.ndarray, kind: Kind, frames: bool) -> np.ndarray:
+    """Points of the oscillators `which` of a stack, all but the stops; rows: their numbers, and x0."""
+    n = kind.masses
+    points, plain = np.zeros(len(which), point_of(kind)), np.empty(len(which), bool)
+    machines = np.ascontiguousarray(rows[:, :-n]).view(machine_of(n))[:, 0]
+    set_plain_points(machines, points, plain, np.empty(1, modes_of(n)), frames)
+    points["cells"] = cells.cells_for(np.maximum(points["rate"], points["omega"]), points["omega"])
+    apart = points["turned"] & (points["rate"] > APART * points["omega"])
+    plain &= (points["cells"] > 0) & (points["cells"] != cells.STIFF_CELLS) & ~apart & ~rows[:, -n:].any(-1)
+    if not plain.all():
+        others = which[~plain]
+        points[~plain] = _other_points(selected(q, others), kind, frames)
+    return points
+
+
 @np.errstate(all="ignore")  # numbers beyond the range of the floats give infinite rates, which are a status
-def _points(q: Linear, kind: Kind, frames: bool) -> np.ndarray:
-    """All but the stops."""
+def _other_points(q: Linear, kind: Kind, frames: bool) -> np.ndarray:
+    """The same of any oscillators."""
     points = np.zeros(q.omega.shape, point_of(kind))
     contact = contact_coordinates(q)
     points["omega"], points["tau"] = q.omega, q.tau

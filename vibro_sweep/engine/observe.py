@@ -94,7 +94,7 @@ def keep_begin(e, w, point, result, o):
     """Keep where the record begins."""
     for j in range(len(result.begin)):
         result.begin[j] = o.X[j]
-    to_masses(point, result.begin[:], w.other)
+    to_masses(point, result.begin[:], w.tables.row)
     result.begin_resting = o.resting
     keep_places(e.law, o, result, e.flights.oscillator[o.table, 0].width)
 
@@ -162,11 +162,11 @@ def keep_record(e, w, plan, point, result, section, phase, running, o):
     numbers = len(result.end)
     for j in range(numbers):
         result.end[j] = o.X[j]
-    to_masses(point, result.end[:], w.other)
+    to_masses(point, result.end[:], w.tables.row)
     if plan.states:
-        turn_states(point, states, o, w.other)
+        turn_states(point, states, o, w.tables.row)
     if len(phase) > 0:
-        keep_impacts(e, o, point, section, phase, w.other)
+        keep_impacts(e, o, point, section, phase, w.tables.row)
     else:
         for n in range(len(section)):
             for j in range(numbers):
@@ -194,17 +194,16 @@ def rounding_of(o, plan):
 
 
 @jit
-def turn_states(point, states, o, other):
+def turn_states(point, states, o, scratch):
     """The section states, and their sizes, of the masses themselves."""
-    if other is not None:
-        if not point.turned:
-            return
+    if not point.turned:
+        return
+    for j in range(states.shape[1]):
+        o.largest[j] = 0.0
+    for n in range(len(states)):
+        to_masses(point, states[n], scratch)
         for j in range(states.shape[1]):
-            o.largest[j] = 0.0
-        for n in range(len(states)):
-            to_masses(point, states[n], other)
-            for j in range(states.shape[1]):
-                o.largest[j] = max(o.largest[j], abs(states[n, j]))
+            o.largest[j] = max(o.largest[j], abs(states[n, j]))
 
 
 @noinline
@@ -269,7 +268,7 @@ def periods_more(plan, result):
 
 
 @jit
-def keep_impacts(e, o, point, section, phase, other):
+def keep_impacts(e, o, point, section, phase, scratch):
     """The logged impacts as points of an impact section; phase: omega t mod 2 pi."""
     width = e.flights.oscillator[o.table, 0].width
     for n in range(min(o.impacts_logged, len(phase))):
@@ -277,7 +276,7 @@ def keep_impacts(e, o, point, section, phase, other):
         section[n, 0], section[n, 1] = o.stops[1] if row[3] > 0.0 else o.stops[0], row[4]
         for j in range(2, section.shape[1]):
             section[n, j] = row[3 + j]
-        to_masses(point, section[n], other)
+        to_masses(point, section[n], scratch)
         phase[n] = point.omega * (row[1] * width + row[2])
     for n in range(min(o.impacts_logged, len(phase)), len(phase)):  # of an earlier record of an orbit that went on
         phase[n] = np.nan

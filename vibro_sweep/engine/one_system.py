@@ -9,22 +9,16 @@ from vibro_sweep.checks.refusals import ParameterError
 from vibro_sweep.engine import points
 from vibro_sweep.engine.any_points import any_points, kind_of
 from vibro_sweep.engine.compliant.law import LOGGED
-from vibro_sweep.engine.coordinates.contact import is_far
-from vibro_sweep.engine.coordinates.invariant_planes import moved
-from vibro_sweep.engine.coordinates.metric import ROUNDING
 from vibro_sweep.engine.motion import orbits
 from vibro_sweep.engine.point_tables import ON_STOP
-from vibro_sweep.engine.records import PAPER, POINT, Kind, new_results, starts_at
+from vibro_sweep.engine.records import Kind, new_results, starts_at
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.tables import cells
 from vibro_sweep.engine.tables.flight import Flight
 from vibro_sweep.engine.variational.spectrum import BATCHES
 from vibro_sweep.oscillator.linear import stacked
-from vibro_sweep.oscillator.models.two_mass import NAMES
-from vibro_sweep.oscillator.modes import modes
-from vibro_sweep.oscillator.oscillator import System, in_closed_form
+from vibro_sweep.oscillator.oscillator import System
 from vibro_sweep.oscillator.own_time import in_own_time, with_velocities
-from vibro_sweep.oscillator.stops import has_compliant
 from vibro_sweep.tables import outcomes as status
 from vibro_sweep.tables.coordinates import checked_state
 
@@ -48,35 +42,6 @@ CONTACT = np.dtype(
 )  # fmt: skip
 
 
-def unrepeated(values) -> np.ndarray:
-    """An array without the repetitions of `np.broadcast_to`: such axes have the length 1."""
-    values = np.asarray(values, float)
-    return values[tuple(slice(None) if stride else slice(1) for stride in values.strides)]
-
-
-def points_of(parameters: dict[str, np.ndarray], stops: str = "both", frames: bool = True) -> np.ndarray:
-    """Systems with these numbers (arrays of one shape, tau resolved) as POINTs of the kernels, of that shape.
-
-    stops: both, right or left. frames: whether tangent vectors are wanted.
-    """
-    result = np.zeros(np.shape(parameters["b"]), POINT)
-    for name in NAMES:
-        result[name] = parameters[name]
-    few = {name: unrepeated(parameters[name]) for name in NAMES}
-    psi, omega_squared = modes(few["mu_m"], few["mu_k"])
-    result["psi"], result["omega_squared"] = psi, omega_squared
-    if frames:
-        with np.errstate(all="ignore"):  # where there are no modes
-            eta, rounding = few["zeta"][..., None] * omega_squared, ROUNDING * omega_squared
-            result["rounding"] = moved(eta, omega_squared - eta**2, ROUNDING * eta, rounding).max(axis=-1)
-    result["cells"] = cells.cells_needed(omega_squared, few["zeta"], few["omega"])
-    offset, R = parameters.get("offset", 0.0), parameters["R"]
-    result["stops"][..., 0] = offset - parameters["b"] if stops != "right" else -np.inf
-    result["stops"][..., 1] = offset + parameters["b"] if stops != "left" else np.inf
-    result["stops"][..., 2], result["stops"][..., 3] = parameters.get("R_left", R), R
-    return result
-
-
 def plan_of(transient: int = 0, record: int = 0, lyapunov: bool = False) -> points.Plan:
     """The plan of what the kernels compute."""
     return points.Plan(
@@ -97,28 +62,8 @@ def plan_of(transient: int = 0, record: int = 0, lyapunov: bool = False) -> poin
     )
 
 
-def is_paper(system, axes: dict[str, np.ndarray] | None = None) -> bool:
-    """Whether it is the paper's oscillator, with proportional damping, without a free mode, and with stops about 0.
-
-    axes : values for some of its numbers, for all of which it must be
-    """
-    axes = axes or {}
-    if not in_closed_form(system, axes):
-        return False
-    if "mu_c" in axes or system.mu_c not in (None, system.mu_k):
-        return False
-    if has_compliant(system.numbers):
-        return False
-    if not np.all(axes.get("mu_k", system.mu_k)):
-        return False
-    offset, b = (axes.get(name, getattr(system, name)) for name in ("offset", "b"))
-    return not np.any(offset) or not is_far(np.max(np.abs(offset)), np.min(np.abs(b)))
-
-
 def point_of_one(system, rate: float) -> tuple[np.ndarray, Kind]:
     """The POINT (1,) of a system in the unit of time 1/rate, and its kind."""
-    if is_paper(system):
-        return points_of(system.parameters(), system.stops).reshape(1), PAPER
     one = stacked([in_own_time(system.linear, rate)])
     kind = kind_of(one)
     return any_points(one, kind), kind
@@ -148,7 +93,7 @@ class Engine:
             raise ParameterError("omega", system.omega, allowed)
         self.period = system.period
         self.width = self.period * rate / self.cells
-        self._workspace = points.new_workspace(plan_of(), self.cells, 0, kind=self.kind)
+        self._workspace = points.new_workspace(plan_of(), self.cells, 0, self.kind)
         self._run(points.TABLES, LANES)
         self.stops = orbits.Stops(*self.point["stops"][0].tolist())
         self.ensemble = self._workspace.ensemble
@@ -197,7 +142,7 @@ class Engine:
     @property
     def turned(self) -> bool:
         """Whether contact coordinates are others than those of the masses."""
-        return not self.kind.paper and bool(self.point["turned"][0])
+        return bool(self.point["turned"][0])
 
     @property
     def contact_matrices(self) -> tuple[np.ndarray, np.ndarray]:
@@ -274,7 +219,7 @@ class Engine:
     def impacts(self, rows: np.ndarray, start: float = -np.inf) -> np.ndarray:
         """Recorded impacts (m, 3 + 2 N) as a structured array with absolute times, none before `start`.
 
-        Of the paper's oscillator `IMPACT`; of others with x and xdot (N,) of all masses before the impact.
+        Of a `System` `IMPACT`; of others with x and xdot (N,) of all masses before the impact.
         """
         wall = np.where(rows[:, 3:4] > 0, self.stops.right, self.stops.left)
         states = self.to_masses(np.concatenate([wall, rows[:, 4:]], -1))

@@ -11,11 +11,11 @@ from vibro_sweep.engine.motion.ensemble import carry
 from vibro_sweep.engine.motion.orbits import Stops, new_records, set_state
 from vibro_sweep.engine.motion.together import Ensemble, Readings, flight_of, new_ensemble
 from vibro_sweep.engine.observe import PHASES, RECORD, begin_phase, close, end_phase
-from vibro_sweep.engine.point_tables import fill_tables, same_tables, set_graze, to_contact
-from vibro_sweep.engine.records import PAPER, Kind, point_of
+from vibro_sweep.engine.point_tables import same_tables, set_graze, to_contact
+from vibro_sweep.engine.records import Kind, point_of
 from vibro_sweep.engine.simd.jit import exported, inline, jit, noinline
 from vibro_sweep.engine.simd.lanes import LANES
-from vibro_sweep.engine.tables import general_tables, series
+from vibro_sweep.engine.tables import build
 from vibro_sweep.engine.two_modes import new_fit
 from vibro_sweep.engine.variational import tangent
 from vibro_sweep.engine.variational.multiplier_groups import multipliers_of
@@ -68,11 +68,10 @@ class Workspace(NamedTuple):
     product: np.ndarray  # (n, n)
     matrix: np.ndarray  # (n, n)
     multipliers: np.ndarray  # (LANES,) `multipliers_of`
-    paper: series.Workspace | None  # or
-    other: general_tables.Workspace | None  # as in point_tables.py
+    tables: build.Workspace
 
 
-def new_workspace(plan: Plan, cells: int, samples: int, orbits: int = LANES, kind: Kind = PAPER) -> Workspace:
+def new_workspace(plan: Plan, cells: int, samples: int, kind: Kind, orbits: int = LANES) -> Workspace:
     """Room for points with at most so many cells, and for the records of so many orbits side by side."""
     impacts, states = plan.record if plan.section_side else 0, 2 * kind.masses
     vectors, numbers = (states + 1, states + 2) if kind.compliant else (states, states)
@@ -94,8 +93,7 @@ def new_workspace(plan: Plan, cells: int, samples: int, orbits: int = LANES, kin
         np.empty((vectors, vectors)),
         np.empty((vectors, vectors)),
         np.zeros(LANES, multipliers_of(vectors)),
-        series.new_workspace() if kind.paper else None,
-        None if kind.paper else general_tables.new_workspace(kind.masses, kind.constant),
+        build.new_workspace(kind.masses, kind.constant),
     )
 
 
@@ -118,20 +116,20 @@ def give_law(law, i, point, q):
 def prepare(point, i, w, plan):
     """Orbit i gets the tables of its point, those of the orbit before it if they are the same; and its stops."""
     e, o, table = w.ensemble, w.ensemble.orbits[i], i
-    if i > 0 and same_tables(point, w.built[e.orbits[i - 1].table], w.paper, w.other):
+    if i > 0 and same_tables(point, w.built[e.orbits[i - 1].table]):
         table = e.orbits[i - 1].table
     o.table = table
     f = flight_of(e, o)
     q = f.oscillator[0]
-    if not same_tables(point, w.built[table], w.paper, w.other):
-        fill_tables(f, point, w.paper, w.other)
+    if not same_tables(point, w.built[table]):
+        build.build(f, w.tables, point)
         w.built[table] = point
     set_graze(q, point)
     stops = Stops(point.stops[0], point.stops[1], point.stops[2], point.stops[3])
     o.from_base = q.stiff or q.largest > LARGE * clearance(stops)
     strike.set_stops(e.strike[0], i, stops)
     give_law(e.law, i, point, q)
-    if not same_tables(point, w.carried[i], w.paper, w.other):
+    if not same_tables(point, w.carried[i]):
         strike.set_oscillator(e.strike[0], i, q)
         if plan.lyapunov:
             tangent.set_frame(e.tangent[0], i, q)
@@ -166,7 +164,7 @@ def set_orbits(points, starts, results, n, lanes, w, plan):
             relax_from(e.law, i, results[before, k].relaxed, cell, offset)
         else:
             relax_from(e.law, i, start[len(state) : len(state) + 2], cell, offset)
-        to_contact(point, state, stops, w.other)
+        to_contact(point, state, stops, w.tables.row)
         if plan.order == 0:  # points of the map may lie beyond the stops
             keep_between(e.law, i, state, stops)
         set_state(o, e.flights.nodes[o.table], stops, cell, offset, state)

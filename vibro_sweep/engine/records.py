@@ -6,7 +6,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.oscillator.models.two_mass import NAMES
 from vibro_sweep.tables.observables import OF_AN_ORBIT, dimensions
 
 
@@ -15,25 +14,11 @@ class Kind(NamedTuple):
 
     masses: int
     constant: bool  # whether there is room for a constant force
-    paper: bool  # the paper's oscillator, with tables from its modes
     compliant: bool = False  # whether some stops are (engine/compliant/)
 
 
-PAPER = Kind(2, False, True)
-
-POINT = np.dtype(
-    [(name, float) for name in NAMES]
-    + [("psi", float, (2, 2)), ("omega_squared", float, 2), ("cells", np.int64)]
-    + [("rounding", float)]  # how far rounding may have moved the real part of a root
-    + [("stops", float, 4)]  # left, right, and the restitution of each
-    + [("graze", float, 4)]  # the point at which the discontinuity mapping is expanded
-)
-
-
 def point_of(kind: Kind) -> np.dtype:
-    """A point of any oscillator in contact coordinates q = P (x - x0); POINT of the paper's."""
-    if kind.paper:
-        return POINT
+    """A point: an oscillator in contact coordinates q = P (x - x0)."""
     n = kind.masses
     contact = [
         ("contact_stiffness", float, 2),  # of the left stop and the right one, over m_e; 0: it is rigid
@@ -46,7 +31,7 @@ def point_of(kind: Kind) -> np.dtype:
     return np.dtype(
         [
             *(contact if kind.compliant else []),
-            ("stops", float, 4),
+            ("stops", float, 4),  # left, right, and the restitution of each
             ("omega", float),
             ("tau", float),
             ("cells", np.int64),  # 0: its rates are too far apart

@@ -47,9 +47,10 @@ def _everywhere(value, shape: tuple[int, ...]) -> np.ndarray:
 def linears(system: Oscillator, axes: dict[str, np.ndarray]) -> Linear:
     """The oscillators at the points of such a grid, phases resolved: a stack of its shape."""
     shape = tuple(len(values) for values in axes.values())
-    meshes = zip(axes, np.meshgrid(*axes.values(), indexing="ij"), strict=True)
+    dense = isinstance(system, FunctionModel)
+    meshes = zip(axes, np.meshgrid(*axes.values(), indexing="ij", sparse=not dense), strict=True)
     changes = {key: values for key, values in meshes if key in system.described}
-    if not isinstance(system, FunctionModel):
+    if not dense:
         return stack_of(system.family, shape, changes)
     rows = zip(*(values.ravel().tolist() for values in changes.values()), strict=True) if changes else [()]
     each = stacked([_one(system.family, dict(zip(changes, row, strict=True))) for row in rows])

@@ -268,10 +268,21 @@ def static_state(q: Linear) -> np.ndarray | None:
 def stack_of(family: Family, shape: tuple[int, ...], changes: dict[str, np.ndarray]) -> Linear:
     """The oscillators of a family with these numbers, arrays that broadcast to `shape`: a stack, phases resolved."""
     fields = {name: x for name, x in family.built_with(changes)._asdict().items() if x is not None}
-    entries = {name: np.shape(x)[np.ndim(x) - RANKS.get(name, 0) :] for name, x in fields.items()}
-    everywhere = {name: np.broadcast_to(x, shape + entries[name]) for name, x in fields.items()}
-    q = Linear(**{"tau": None} | everywhere)
-    return q._replace(tau=grazing_phases(gap_responses(q, steady_amplitudes(q)))) if q.tau is None else q
+    q = Linear(**{"tau": None} | {name: _everywhere(name, x, shape) for name, x in fields.items()})
+    if q.tau is not None:
+        return q
+    alike = np.broadcast_shapes(*(_lead(name, fields[name]) for name in FORCED))  # of those that differ in stops alone
+    forced = q._replace(**{name: _everywhere(name, fields[name], alike) for name in FORCED})
+    return q._replace(tau=np.broadcast_to(grazing_phases(gap_responses(forced, steady_amplitudes(forced))), shape))
+
+
+def _lead(name: str, x: np.ndarray) -> tuple[int, ...]:
+    """The shape of the stack of which x is the field `name`."""
+    return np.shape(x)[: np.ndim(x) - RANKS.get(name, 0)]
+
+
+def _everywhere(name: str, x: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
+    return np.broadcast_to(x, shape + np.shape(x)[len(_lead(name, x)) :])
 
 
 def rest_state(q: Linear) -> np.ndarray:

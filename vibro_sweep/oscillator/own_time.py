@@ -10,6 +10,7 @@ import math
 import numpy as np
 
 from vibro_sweep.oscillator.linear import Linear
+from vibro_sweep.oscillator.stacks import unrepeated
 from vibro_sweep.tables.observables import variables
 from vibro_sweep.tables.units import power_of_seconds
 
@@ -28,7 +29,14 @@ def rate_of(omega: float) -> float:
 @np.errstate(over="ignore")  # numbers that leave the range of the floats are a status
 def in_own_time(q: Linear, rate: float) -> Linear:
     """Oscillators with 1/rate as the unit of time."""
-    return q._replace(**{name: getattr(q, name) / rate**power for name, power in BY_RATE.items()})
+    return q._replace(**{name: _scaled(getattr(q, name), rate**power) for name, power in BY_RATE.items()})
+
+
+def _scaled(x, factor: float):
+    """x / factor; what np.broadcast_to repeats stays so."""
+    if not np.ndim(x):
+        return x / factor
+    return np.broadcast_to(x[unrepeated([x], np.ndim(x))] / factor, x.shape)
 
 
 def with_velocities(states: np.ndarray, masses: int, factor: float) -> np.ndarray:

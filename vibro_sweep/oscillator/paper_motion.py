@@ -83,17 +83,3 @@ def resolved(numbers: dict) -> dict:
 def grazing_clearance(numbers: dict) -> np.ndarray:
     """b* of Theorem 1 for a system's numbers by name: the amplitude of x1 in the steady motion, eq. (16)."""
     return np.hypot(*steady_gap(numbers))
-
-
-def expansion_point(parameters: dict[str, np.ndarray], expand_at: float | None = None) -> np.ndarray:
-    """X* at the right stop, (..., 4), for arrays of parameters.
-
-    The exact grazing point, at b* of Theorem 1; or with its x1 replaced by a clearance `expand_at`, as in the paper,
-    which expands at 6.7107356 where b* is 6.7057167.
-    """
-    d, e = steady_response(*free_motion(parameters))
-    size = np.hypot(d[..., 0], e[..., 0])
-    sin, cos = d[..., 0] / size, e[..., 0] / size
-    omega = parameters["omega"]
-    x2, v2 = d[..., 1] * sin + e[..., 1] * cos, omega * (d[..., 1] * cos - e[..., 1] * sin)
-    return np.stack([size if expand_at is None else np.full_like(size, expand_at), np.zeros_like(size), x2, v2], -1)

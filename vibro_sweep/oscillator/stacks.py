@@ -97,6 +97,11 @@ def different(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return first, place
 
 
+def unrepeated(fields: list[np.ndarray], axes: int) -> tuple[slice, ...]:
+    """What selects the first entry of each of the first `axes` axes along which np.broadcast_to repeats all fields."""
+    return tuple(slice(None if any(x.strides[axis] for x in fields) else 1) for axis in range(axes))
+
+
 def kron2(A: np.ndarray) -> np.ndarray:
     """(..., 2 N, 2 M) that does with x1, v1, x2, v2, ... what A (..., N, M) does with x1, x2, ..."""
     n, m = A.shape[-2:]

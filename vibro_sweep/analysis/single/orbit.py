@@ -21,7 +21,7 @@ from vibro_sweep.engine import points
 from vibro_sweep.engine.compliant.law import LOGGED
 from vibro_sweep.engine.halting import interruptible
 from vibro_sweep.engine.motion import orbits
-from vibro_sweep.engine.one_system import Engine, is_paper, plan_of
+from vibro_sweep.engine.one_system import Engine, plan_of
 from vibro_sweep.engine.records import new_results, starts_at
 from vibro_sweep.oscillator.linear import rest_state
 from vibro_sweep.oscillator.oscillator import Oscillator, checked_system
@@ -236,7 +236,7 @@ def simulate(system: Oscillator, state: ArrayLike | None = None, periods: int = 
         allowed = f"a number of at most {LATEST} forcing periods: beyond, times resolve no motion"
         raise ArgumentError(not_allowed("start_time", start_time, allowed))
     start_time = begins
-    engine = Engine(system, rate=_rate_of(system))
+    engine = Engine(system, rate=rate_of(system.omega))
     begin = engine.checked(state)
     first, cell, offset = (value[()] for value in engine.locate(start_time))
     engine.put(begin, cell, offset)
@@ -273,11 +273,6 @@ def _state(system: Oscillator, state: ArrayLike | None) -> np.ndarray:
         return checked_state(state, system.masses)
     places = rest_state(system.linear)
     return np.stack([places, np.zeros_like(places)], -1).ravel()
-
-
-def _rate_of(system: Oscillator) -> float:
-    """Of the unit of time in which its orbits are computed."""
-    return 1.0 if is_paper(system) else rate_of(system.omega)
 
 
 _Carried = tuple[list[np.ndarray], list[np.ndarray], list[np.ndarray], int, int]
@@ -334,12 +329,12 @@ def lyapunov(
     checked_system(system)
     state, transient = _state(system, state), checked_count("transient", transient, 0)
     record = checked_count("record", record, 1, MAX_RECORD)
-    engine = Engine(system, rate=_rate_of(system))
+    engine = Engine(system, rate=rate_of(system.omega))
     engine.checked(state)
     plan = plan_of(transient, record, lyapunov=True)
     results, nothing = new_results((1, 1), engine.kind.masses), np.empty((1, 1, 0))
     starts = starts_at(np.tile(with_velocities(state, system.masses, 1 / engine.rate), (2, 1, 1)))
-    workspace = points.new_workspace(plan, engine.cells, 0, orbits=1, kind=engine.kind)
+    workspace = points.new_workspace(plan, engine.cells, 0, engine.kind, 1)
     steps = engine.point.reshape(1, 1)
     kept = nothing[..., None], nothing, nothing[..., None]
     interruptible(

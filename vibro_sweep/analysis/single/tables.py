@@ -3,9 +3,8 @@
 import numpy as np
 
 from vibro_sweep.engine.any_points import any_points, kind_of
-from vibro_sweep.engine.one_system import is_paper, points_of
-from vibro_sweep.engine.records import PAPER, Kind
-from vibro_sweep.oscillator.grid import grid, linears
+from vibro_sweep.engine.records import Kind
+from vibro_sweep.oscillator.grid import linears
 from vibro_sweep.oscillator.oscillator import Oscillator
 from vibro_sweep.oscillator.own_time import in_own_time, rate_of
 
@@ -15,8 +14,6 @@ def table_of(system: Oscillator, axes: dict[str, np.ndarray], frames: bool) -> t
 
     frames : for tangent vectors
     """
-    if is_paper(system, axes):
-        return points_of(grid(system, axes), system.stops, frames), PAPER, 1.0
     each = linears(system, axes)
     kind, rate = kind_of(each), rate_of(system.omega)  # of the system, so that it is the same in all blocks
     return any_points(in_own_time(each, rate), kind, frames), kind, rate

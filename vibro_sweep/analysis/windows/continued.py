@@ -56,7 +56,7 @@ def _computed(row: Row, i: np.ndarray, begin: np.ndarray, transient: int) -> Con
     plan = plan_of(transient + WARM_UP, MORE, lyapunov=True)._replace(impacts=True)
     results, nothing = new_results((1, n), kind.masses), np.empty((1, n, 0))
     starts = starts_at(np.stack([begin, begin]))
-    workspace = points.new_workspace(plan, int(table["cells"].max()), 0, min(n, LANES), kind)
+    workspace = points.new_workspace(plan, int(table["cells"].max()), 0, kind, min(n, LANES))
     unused = np.empty((1, n, 0, states))
     interruptible(
         points.run_points, table.reshape(1, n), starts, results, unused, nothing, unused, workspace, plan, None,

@@ -14,9 +14,8 @@ from vibro_sweep.engine.motion.first_contact import polished_contact, set_gap
 from vibro_sweep.engine.motion.impacts import size_at
 from vibro_sweep.engine.motion.rest import first_nonzero
 from vibro_sweep.engine.simd.jit import jit
-from vibro_sweep.engine.tables.flight import ORDER, evaluate
+from vibro_sweep.engine.tables.flight import ORDER, bound_third_over, evaluate
 from vibro_sweep.engine.tables.products import change_within
-from vibro_sweep.engine.tables.resting import bound_third_over
 from vibro_sweep.engine.tables.twofold import add, multiply
 
 NOTHING = 1e-250  # a contact that has died away, which has no end

@@ -25,8 +25,7 @@ from vibro_sweep.engine.motion.orbits import advance_exactly, is_finite, round_o
 from vibro_sweep.engine.motion.rest import begin_rest, chatter, first_nonzero, stay_at_rest
 from vibro_sweep.engine.simd.jit import jit, noinline
 from vibro_sweep.engine.simd.memory import row
-from vibro_sweep.engine.tables.flight import bounds, load
-from vibro_sweep.engine.tables.resting import bound_third_over
+from vibro_sweep.engine.tables.flight import bound_third_over, bounds, load
 from vibro_sweep.tables import outcomes as status
 
 LARGEST = 1e100  # of a state: its square has to be a number

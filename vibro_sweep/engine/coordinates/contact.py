@@ -120,10 +120,11 @@ def push_of(q: Linear, P: np.ndarray) -> np.ndarray:
 def origin_of(q: Linear) -> np.ndarray:
     """x0 (..., N): at rest with the gap in the middle of the stops, as nearly as rounding lets it be; 0 if that lies
     between."""
-    result = np.zeros(q.normal.shape)
     far = is_far(q.middle, np.minimum(np.abs(q.middle - q.low), np.abs(q.high - q.middle)))
-    if far.any():
-        result[far] = _held_in_the_middle(selected(q, far))
+    if not far.any():
+        return np.broadcast_to(0.0, q.normal.shape)
+    result = np.zeros(q.normal.shape)
+    result[far] = _held_in_the_middle(selected(q, far))
     return result
 
 
@@ -155,7 +156,7 @@ def rest_force(q: Linear, origin: np.ndarray) -> np.ndarray:
 def distance(q: Linear, origin: np.ndarray, gap: np.ndarray) -> np.ndarray:
     """`gap` (...) as seen from x0, rounded once."""
     result = np.array(gap)
-    for place in zip(*np.nonzero(origin.any(-1) & np.isfinite(gap)), strict=True):
+    for place in map(tuple, np.argwhere(origin.any(-1) & np.isfinite(gap))):
         result[place] = exact_sum([gap[place], *(-q.normal[place])], [1.0, *origin[place]])
     return result
 

@@ -14,32 +14,6 @@ SAFETY = 1.0 + 1e-9  # far more than what rounding does to any of it
 
 
 @jit
-def fill_coasting(q, psi, omega_squared, mu_m, mu_k, f2, tau):
-    """The steady motion at node 0, and by how much a motion near it may move the gap."""
-    a, b = 0.0, 0.0
-    for i in range(4):
-        q.steady[i] = 0.0
-        for j in range(4):
-            q.confining[i, j] = 0.0
-    for j in range(2):
-        force, eta = psi[0, j] * (1.0 - f2) + psi[1, j] * f2, q.zeta * omega_squared[j]
-        # (7) with the sign of B_j corrected: A_j sin + B_j cos
-        detuning, damping = omega_squared[j] - q.omega * q.omega, 2.0 * eta * q.omega
-        size = force / (detuning * detuning + damping * damping)
-        A, B = size * detuning, -size * damping
-        a += psi[0, j] * A
-        b += psi[0, j] * B
-        for i in range(2):
-            q.steady[2 * i] += psi[i, j] * (A * math.sin(tau) + B * math.cos(tau))
-            q.steady[2 * i + 1] += psi[i, j] * q.omega * (A * math.cos(tau) - B * math.sin(tau))
-    q.middle, q.swing = 0.0, math.hypot(a, b)  # (17)
-    compliance = (1.0 + mu_k) / mu_k  # e1^T K^-1 e1
-    q.confining[0, 0], q.confining[1, 1] = compliance, compliance
-    q.confining[0, 2] = q.confining[2, 0] = -compliance
-    q.confining[2, 2], q.confining[3, 3] = compliance * (1.0 + mu_k), compliance * mu_m
-
-
-@jit
 def is_clear(q, o):
     """Whether the orbit, in free flight at node 0, can strike no more. False where that is not known."""
     states, square = len(q.steady), 0.0

@@ -8,8 +8,7 @@ from vibro_sweep.engine.motion.energy_sums import add_flight
 from vibro_sweep.engine.motion.first_contact import first_contact, set_gap
 from vibro_sweep.engine.motion.orbits import add_change, restitution_of, take_samples
 from vibro_sweep.engine.simd.jit import jit
-from vibro_sweep.engine.tables.flight import ORDER, evaluate
-from vibro_sweep.engine.tables.resting import bound_third_over, carry_over_rest, state_after
+from vibro_sweep.engine.tables.flight import ORDER, bound_third_over, evaluate
 from vibro_sweep.engine.tables.twofold import add
 from vibro_sweep.engine.variational import tangent_at_rest, tangent_flight
 
@@ -73,10 +72,6 @@ def load_rest(q, o, sin, cos):
 @jit
 def carry_tangent(t, i, q, w):
     """Tangent vectors over a rest of the time w within a cell."""
-    if q.rest_square > 0.0:
-        t.constrained[2, 2], t.constrained[2, 3], t.constrained[3, 2], t.constrained[3, 3] = carry_over_rest(q, w)
-        tangent_at_rest.release(t, i)
-        return
     while w > 0.0:
         step = min(w, q.rest_step)
         w -= step
@@ -114,8 +109,7 @@ def stay_at_rest(f, o, records, t, k, s, sin, cos, most):
     most : of the acceleration into the stop that this holds; infinite of a rigid one
     """
     q, X = f.oscillator[0], o.X
-    x2, v2, sin_there, cos_there, w, w_low = X[2], X[3], sin, cos, 0.0, 0.0
-    one_series = q.rest_step == q.width
+    sin_there, cos_there, w, w_low = sin, cos, 0.0, 0.0
     while True:
         load_rest(q, o, sin_there, cos_there)
         left = (q.width - s - w) - w_low
@@ -129,16 +123,13 @@ def stay_at_rest(f, o, records, t, k, s, sin, cos, most):
             w, w_low = add(w, w_low, end, 0.0)
         else:
             w += end
-        if one_series or q.rest_square == 0.0:
-            for m in range(1, len(o.c)):
-                if q.exact:
-                    add_change(o, m, end)
-                else:
-                    X[2 * m], X[2 * m + 1] = evaluate(o.c[m], end)
-            swing, turn = math.sin(q.omega * w), math.cos(q.omega * w)
-            sin_there, cos_there = sin * turn + cos * swing, cos * turn - sin * swing
-        else:
-            X[2], X[3], sin_there, cos_there = state_after(q, X[0], x2, v2, sin, cos, w)
+        for m in range(1, len(o.c)):
+            if q.exact:
+                add_change(o, m, end)
+            else:
+                X[2 * m], X[2 * m + 1] = evaluate(o.c[m], end)
+        swing, turn = math.sin(q.omega * w), math.cos(q.omega * w)
+        sin_there, cos_there = sin * turn + cos * swing, cos * turn - sin * swing
         if last or not d == np.inf:  # NaN, too, is passed on
             break
     o.rest_time += w

@@ -1,41 +1,66 @@
-"""The tables of one oscillator (`Flight`), from its modes."""
+"""The tables of a point, in contact coordinates (coordinates/contact.py)."""
 
-from vibro_sweep.engine.motion.coast import fill_coasting
+from typing import NamedTuple
+
+import numpy as np
+
 from vibro_sweep.engine.simd.jit import exported
-from vibro_sweep.engine.tables.close_modes import CLOSE
-from vibro_sweep.engine.tables.control_points import fill_scan
-from vibro_sweep.engine.tables.forced import fill_motion, fill_phases
+from vibro_sweep.engine.tables.exclusion import fill_exclusion
+from vibro_sweep.engine.tables.fast_roots import fill_stiff_exclusion
+from vibro_sweep.engine.tables.flight import inputs_of
+from vibro_sweep.engine.tables.forced import fill_forced_motion, fill_phases
 from vibro_sweep.engine.tables.frame_tables import fill_frame
-from vibro_sweep.engine.tables.free_tables import fill_coupling, fill_flight, gap_of
-from vibro_sweep.engine.tables.resting import fill_rest
-from vibro_sweep.engine.tables.series import fill_equations, fill_impulse, fill_series, set_grid
-from vibro_sweep.engine.tables.stiff import rate_of
+from vibro_sweep.engine.tables.products import fill_products
+from vibro_sweep.engine.tables.series import (
+    fill_equations,
+    fill_flight_series,
+    fill_impulse,
+    fill_rest_series,
+    set_grid,
+)
+
+
+class Workspace(NamedTuple):
+    """The arrays in which the tables are computed."""
+
+    A: np.ndarray  # (inputs, inputs)
+    row: np.ndarray  # (inputs,)
+    turned: np.ndarray  # (2, 2 N + 3)
+    twofold: np.ndarray  # (4, 2, inputs, inputs)
+
+
+def new_workspace(masses: int, constant: bool) -> Workspace:
+    """Room for the tables of an oscillator with so many masses."""
+    inputs = inputs_of(masses, constant)
+    return Workspace(
+        np.empty((inputs, inputs)),
+        np.empty(inputs),
+        np.empty((2, 2 * masses + 3)),
+        np.empty((4, 2, inputs, inputs)),
+    )
 
 
 @exported
-def build(f, workspace, cells, psi, omega_squared, mu_m, mu_k, zeta, f2, omega, tau):
-    """Fill the tables of an oscillator with modes psi (2, 2), omega_squared (2,), and phase tau (radians) at node 0.
-
-    scratch: `series.Scratch`.
-    """
+def build(f, w, point):
+    """Fill the tables of a point (`point_of`)."""
     q = f.oscillator[0]
-    q.zeta, q.kappa[0], q.kappa[1] = zeta, 0.0, 2.0 * zeta / mu_m
-    rate = max(omega, max(rate_of(omega_squared[0], zeta), rate_of(omega_squared[1], zeta)))
-    fill_phases(q, f.nodes, cells, tau)
-    set_grid(q, cells, omega, rate)
-    q.exact = False
-    fill_equations(q, workspace, mu_m, mu_k, f2)
-    fill_series(q, workspace)
-    fill_rest(q, mu_m, mu_k, f2)
-    fill_impulse(q)
-    fill_flight(q, f.nodes, psi, omega_squared, mu_m)
-    gap = gap_of(mu_m, mu_k)
-    if gap < CLOSE * omega_squared[1]:
-        fill_coupling(q, f.nodes, psi, omega_squared, mu_m, gap)
-    fill_motion(q, f.nodes, psi, omega_squared, f2)
-    q.largest = 0.0
-    for k in range(cells + 1):
-        q.largest = max(q.largest, abs(f.nodes[k].z[0]))
-    fill_scan(q, f.nodes, f.scan, psi, omega_squared, mu_m, f2)
-    fill_frame(q, psi, omega_squared, mu_m)
-    fill_coasting(q, psi, omega_squared, mu_m, mu_k, f2, tau)
+    fill_phases(q, f.nodes, point.cells, point.tau)
+    set_grid(q, point.omega, max(point.omega, point.rate))
+    fill_equations(w.A, point, len(q.force))
+    fill_flight_series(q, w)
+    fill_impulse(q, point)
+    fill_rest_series(q, w, point, max(point.omega, point.constrained_rate))
+    fill_products(q, f.nodes, point, w.twofold)
+    fill_forced_motion(q, f.nodes, point.begin)
+    q.exact = q.stiff and point.apart
+    if q.stiff:
+        fill_stiff_exclusion(q, f.nodes, f.scan, point, w.turned)
+    else:
+        fill_exclusion(q, f.nodes, f.scan)
+    if point.frame_scale[0] > 0.0:  # 0: no tangent vectors are wanted
+        fill_frame(q, f.nodes, point)
+    q.middle, q.swing = point.middle, point.swing
+    for i in range(len(q.steady)):
+        q.steady[i] = point.steady[i]
+        for j in range(len(q.steady)):
+            q.confining[i, j] = point.confining[i, j]

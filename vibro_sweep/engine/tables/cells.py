@@ -13,20 +13,11 @@ LONGEST = 1e7  # the fastest rate times the period beyond which a system is refu
 
 
 @np.errstate(all="ignore")
-def cells_needed(omega_squared: np.ndarray, zeta: np.ndarray, omega: np.ndarray) -> np.ndarray:
-    """Cells for which every rate of a system times the cell width is at most `WIDTH`; omega_squared is (..., 2).
+def cells_for(rate: np.ndarray, omega: np.ndarray) -> np.ndarray:
+    """Cells for which the fastest rate of a system times the cell width is at most `WIDTH`; rate and omega: (...).
 
     `STIFF_CELLS` where that would be too many, 0 where the rates are too far apart altogether.
     """
-    eta = np.asarray(zeta)[..., None] * omega_squared
-    overdamped = np.sqrt(np.maximum(eta**2 - omega_squared, 0.0))
-    rate = np.where(eta**2 <= omega_squared, np.sqrt(omega_squared), eta + overdamped).max(-1)
-    return cells_for(rate, omega)
-
-
-@np.errstate(all="ignore")
-def cells_for(rate: np.ndarray, omega: np.ndarray) -> np.ndarray:
-    """The same for systems with these fastest rates."""
     turns = 2 * math.pi * np.maximum(rate / omega, 1.0)
     turns = np.where(turns <= LONGEST, turns, np.inf)  # also where they are not a number
     cells = np.maximum(LEAST_CELLS, 8 * np.ceil(np.minimum(turns, LONGEST) / WIDTH / 8)).astype(np.int64)

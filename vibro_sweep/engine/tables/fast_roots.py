@@ -1,11 +1,12 @@
-"""The exclusion test of a stiff oscillator of any kind: fast roots are bounded, the scan follows the others.
+"""The exclusion test of a stiff oscillator: fast roots are bounded, the scan follows the others.
 
-stiff.py does this for the paper's oscillator by the energies of its modes. Here the gap is a sum of exponentials
-(coordinates/exponentials.py). One whose root the cells do not resolve stays below its size at the beginning, since no
-root grows; the slow ones are followed by cubics, whose error their fourth derivatives bound. The motion r begins so
-that the force excites no fast root. Where eigenvectors all but coincide (a free mode, critical damping) the sum has
-lost digits: it is compared at all nodes with the flights themselves, and the bounds are raised by ten times what they
-differ.
+Where a rate is so fast that series would need more than `cells.MOST_CELLS` cells to a period, the system is called
+stiff: its cells are those of a coarser grid, and a series takes a small step within its cell. The gap is a sum of
+exponentials (coordinates/exponentials.py). One whose root the cells do not resolve stays below its size at the
+beginning, since no root grows; the slow ones are followed by cubics, whose error their fourth derivatives bound. The
+motion r begins so that the force excites no fast root. Where eigenvectors all but coincide (a free mode, critical
+damping) the sum has lost digits: it is compared at all nodes with the flights themselves, and the bounds are raised by
+ten times what they differ.
 """
 
 import math

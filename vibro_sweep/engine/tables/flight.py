@@ -55,7 +55,6 @@ def oscillator_of(masses: int, constant: bool = False) -> np.dtype:
         ("step", float),  # width of a series: a cell, or where stiff a part of one
         ("omega", float),
         ("tau", float),
-        ("zeta", float),
         (
             "kappa",
             float,
@@ -71,10 +70,7 @@ def oscillator_of(masses: int, constant: bool = False) -> np.dtype:
         ("remainder", float, (states + 1,)),  # bound on |x1 - cubic| in any cell, for unit X - r and for r
         ("slow", float, (states,)),  # part of the slow modes in x1; of a stiff system
         ("force", float, (inputs,)),  # acceleration of M1 as a function of them
-        ("rest_step", float),  # width of the series `resting`; of M2 alone, where there is a closed form (resting.py):
-        ("rest_square", float),  # omega^2; 0: there is none
-        ("rest_static", float),  # x2 in equilibrium, for x1 = 1
-        ("rest_response", float, 2),  # steady response of x2 to sin and cos
+        ("rest_step", float),  # width of the series `resting`
         ("impulse_third", float),  # bound on |d3 x1/du3| over a cell after a unit impulse on M1
         ("vanishing", np.int64),  # of tangent.py: directions that a flight over a cell takes below the others' rounding
         ("most_cells_mixed", np.int64),  # cells that tangent vectors may fly between orthonormalisations, and
@@ -100,13 +96,11 @@ def node_of(masses: int, constant: bool = False) -> np.dtype:
     """The record of one node of the grid."""
     states, width, inputs = 2 * masses, width_of(masses, constant), inputs_of(masses, constant)
     fields = [
-        ("z", float, (width,)),  # r, a motion under the force: from rest at node 0; of a fast mode the steady one;
+        ("z", float, (width,)),  # r, a motion under the force (forced.py);
         # then sin and cos of omega t + tau, and perhaps 1
         # flight from node 0: row j is X here of the unit state j there, the others that of the force's sin and cos
         ("E", float, (inputs + inputs % 2, width)),  # there, and of the constant force, from rest; padded
-        ("forced", float, (masses, 2, 2)),  # modal motion from rest at node 0: mode; xi, xi'; to sin, cos there
-        ("angle", float),  # omega t, and
-        ("turn", float, 2),  # its sin and cos
+        ("turn", float, 2),  # sin and cos of omega t
         ("frame", float, (states,)),  # c_1, s_1, c_2, s_2, ... of a flight from node 0
     ]
     return record(fields)
@@ -195,3 +189,12 @@ def bounds(q, c):
         t2 += third[n + 2] * a2
         t3 += third[n + 3] * a3
     return (r0 + r1) + (r2 + r3), (t0 + t1) + (t2 + t3)
+
+
+@jit
+def bound_third_over(c, h):
+    """A bound on the third derivative of the polynomial c over [0, h]."""
+    total = 0.0
+    for n in range(ORDER - 1, 2, -1):
+        total = total * h + n * (n - 1.0) * (n - 2.0) * abs(c[n])
+    return total

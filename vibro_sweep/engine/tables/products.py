@@ -40,9 +40,8 @@ def fill_short(q, D, u):
 
 
 @jit
-def join(a, b, out, states, inputs, angle):
-    """D of the flight a and then b. angle: of the force, over a."""
-    swing, turn = math.sin(angle), math.cos(angle)
+def join(a, b, out, states, inputs, swing, turn):
+    """D of the flight a and then b. swing, turn: sin and cos of omega t, over a."""
     for j in range(inputs):
         for i in range(states):
             total = 0.0
@@ -74,8 +73,8 @@ def fill_products(q, nodes, point, room):
             continue
         step = k & -k if k & (k - 1) else k // 2
         clear(nodes[k].E[:])
-        angle = 2.0 * math.pi * ((k - step) / cells)
-        join(nodes[k - step].E, nodes[step].E, nodes[k].E, states, inputs, angle)
+        swing, turn = nodes[k - step].turn[0], nodes[k - step].turn[1]
+        join(nodes[k - step].E, nodes[step].E, nodes[k].E, states, inputs, swing, turn)
     for k in range(cells + 1):
         for j in range(states):
             nodes[k].E[j, j] += 1.0
@@ -92,34 +91,9 @@ def fill_first(q, nodes):
     fill_short(q, nodes[1].E, u)
     for _ in range(halvings):
         clear(nodes[2].E[:])
-        join(nodes[1].E, nodes[1].E, nodes[2].E, states, inputs, q.omega * u)
+        swing, turn = math.sin(q.omega * u), math.cos(q.omega * u)
+        join(nodes[1].E, nodes[1].E, nodes[2].E, states, inputs, swing, turn)
         for j in range(inputs):
             for i in range(states):
                 nodes[1].E[j, i] = nodes[2].E[j, i]
         u *= 2.0
-
-
-@jit
-def fill_forced_motion(q, nodes, tau, begin):
-    """The motion r under the force, and the other inputs at the nodes. At node 0 the phase is tau.
-
-    There r is at rest; where the system is stiff, in the state `begin`.
-    """
-    states, inputs = 2 * len(q.series), len(q.force)
-    first, second = math.sin(tau), math.cos(tau)
-    q.largest = 0.0
-    for k in range(q.cells + 1):
-        z, E, phase = nodes[k].z, nodes[k].E, tau + 2.0 * math.pi * (k / q.cells)
-        for i in range(len(z)):
-            z[i] = 0.0
-        for i in range(states):
-            z[i] = E[states, i] * first + E[states + 1, i] * second
-            if inputs > states + 2:
-                z[i] += E[states + 2, i]
-            if q.stiff:
-                for j in range(states):
-                    z[i] += E[j, i] * begin[j]
-        z[states], z[states + 1] = math.sin(phase), math.cos(phase)
-        if inputs > states + 2:
-            z[states + 2] = 1.0
-        q.largest = max(q.largest, abs(z[0]))

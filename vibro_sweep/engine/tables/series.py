@@ -1,13 +1,8 @@
-"""Taylor series of flight over a cell (eq. 3)."""
+"""Taylor series of flight over a cell, and of the other masses while a stop holds the gap (eq. 3)."""
 
 import math
-from typing import NamedTuple
 
-import numpy as np
-
-from vibro_sweep.engine.simd.jit import inline, jit
-from vibro_sweep.engine.simd.lanes import LANES, alike, lanes_of, number, select
-from vibro_sweep.engine.simd.memory import new_lines, put, row
+from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.tables.flight import ORDER, WIDTH
 
 
@@ -32,9 +27,9 @@ def clear(a):
 
 
 @jit
-def set_grid(q, cells, omega, rate):
-    """The cells of the forcing period, and how far a series reaches in them. rate: the fastest."""
-    q.cells, q.width, q.omega = cells, 2.0 * math.pi / omega / cells, omega
+def set_grid(q, omega, rate):
+    """How wide a cell is, and how far a series reaches in it. rate: the fastest."""
+    q.width, q.omega = 2.0 * math.pi / omega / q.cells, omega
     q.stiff = rate * q.width > 1.0001 * WIDTH
     q.step = q.width / math.ceil(rate * q.width / WIDTH) if q.stiff else q.width
     power = 1.0
@@ -47,67 +42,83 @@ def set_grid(q, cells, omega, rate):
         power *= q.step
 
 
-class Workspace(NamedTuple):
-    """The matrices A of z' = A z for z = (x1, v1, x2, v2, sin(omega t + tau), cos(omega t + tau)), eq. (3), padded."""
-
-    free: np.ndarray  # (6, LANES)
-    constrained: np.ndarray  # (6, LANES), while M1 rests: v1 = 0
-
-
-def new_workspace() -> Workspace:
-    return Workspace(new_lines((6, LANES), float), new_lines((6, LANES), float))
+@jit
+def fill_equations(A, point, inputs):
+    """z' = A z for z = (x1, v1, ..., sin, cos) or (x1, v1, ..., sin, cos, 1)."""
+    masses = len(point.damping)
+    clear(A)
+    for i in range(masses):
+        A[2 * i, 2 * i + 1] = 1.0
+        for j in range(masses):
+            A[2 * i + 1, 2 * j], A[2 * i + 1, 2 * j + 1] = -point.stiffness[i, j], -point.damping[i, j]
+        for j in range(2 * masses, inputs):
+            A[2 * i + 1, j] = point.force[i, j - 2 * masses]
+    A[2 * masses, 2 * masses + 1], A[2 * masses + 1, 2 * masses] = point.omega, -point.omega
 
 
 @jit
-def fill_equations(q, w, mu_m, mu_k, f2):
-    """Fill both matrices, and the acceleration of M1 as a function of z. What is zero in every A stays as it was
-    made."""
-    A, constrained, zeta, omega = w.free, w.constrained, q.zeta, q.omega
-    A[0, 1] = A[2, 3] = 1.0
-    A[1, 0], A[1, 1], A[1, 2], A[1, 3], A[1, 4] = -1.0, -2.0 * zeta, 1.0, 2.0 * zeta, 1.0 - f2
-    A[3, 0], A[3, 1] = 1.0 / mu_m, 2.0 * zeta / mu_m
-    A[3, 2], A[3, 3], A[3, 4] = -(1.0 + mu_k) / mu_m, -2.0 * zeta * (1.0 + mu_k) / mu_m, f2 / mu_m
-    A[4, 5], A[5, 4] = omega, -omega
-    for i in range(6):
-        q.force[i] = A[1, i]
-    for i in range(2, 6):
-        put(constrained, i, row(A, i))
-    constrained[3, 1] = 0.0
-
-
-@inline
-def times(c, A):
-    """The row vector c times A, both of six numbers, padded."""
-    total = alike(0.0)
-    for i in range(6):
-        total = total + row(A, i) * number(c, i)
-    return total
+def fill_flight_series(q, w):
+    """Taylor series of all positions, and the acceleration of the gap."""
+    inputs = len(q.force)
+    for j in range(inputs):
+        q.force[j] = w.A[1, j]
+    for m in range(len(q.series)):
+        for j in range(inputs):
+            w.row[j] = 1.0 if j == 2 * m else 0.0
+        derive(w.A, w.row, inputs, q.series[m])
 
 
 @jit
-def fill_series(q, w):
-    """Taylor series of x1 and x2 in free flight; and while M1 rests of its free acceleration and of x2.
+def fill_impulse(q, point):
+    """Fill the response to an impulse on the gap: of all velocities at once, and to the positions in the flight that
+    follows.
 
-    Each term is the one before it times A/n. All four go side by side: none waits for the last step of another.
+    An impact leaves qj - p_j q1 as it is. Its derivative changes by -kappa_j where dampers feel a step of q1 by 1.
     """
-    x1, x2 = select(lanes_of(0b000001), 1.0, 0.0), select(lanes_of(0b000100), 1.0, 0.0)
-    pull, constrained_x2 = select(lanes_of(0b000010), 0.0, row(w.free, 1)), x2
-    for n in range(ORDER):
-        if n > 0:
-            x1, x2 = times(x1, w.free) / n, times(x2, w.free) / n
-            pull, constrained_x2 = times(pull, w.constrained) / n, times(constrained_x2, w.constrained) / n
-        for i in range(6):
-            q.series[0, i, n], q.series[1, i, n] = number(x1, i), number(x2, i)
-        for i in range(5):  # without v1
-            j = i + 1 if i > 0 else 0
-            q.resting[0, i, n], q.resting[1, i, n] = number(pull, j), number(constrained_x2, j)
-
-
-@jit
-def fill_impulse(q):
-    """Fill the response to an impulse on M1, which moves no other mass at once."""
-    q.push[0], q.push[1], q.drag = 1.0, 0.0, q.force[1]
+    masses, damping, p = len(q.series), point.damping, point.push
+    q.drag = 0.0
+    for j in range(masses):
+        q.push[j] = p[j]
+        q.drag += q.force[2 * j + 1] * p[j]
+    for i in range(masses):
+        q.kappa[i] = 0.0
+        if i > 0:
+            for j in range(masses):
+                q.kappa[i] -= (damping[i, j] - p[i] * damping[0, j]) * p[j]
+        for n in range(ORDER):
+            q.impulse[i, n] = q.series[i, 1, n]
+            for j in range(1, masses):
+                if p[j] != 0.0:
+                    q.impulse[i, n] += p[j] * q.series[i, 2 * j + 1, n]
     q.impulse_third = 0.0
     for n in range(ORDER):
-        q.impulse[0, n], q.impulse[1, n] = q.series[0, 1, n], q.series[1, 1, n]
         q.impulse_third += q.third[n] * abs(q.impulse[0, n])
+
+
+@jit
+def fill_constrained(A, point, inputs):
+    """z' = A z while a stop holds the gap."""
+    masses = len(point.damping)
+    for i in range(1, masses):
+        for j in range(masses):
+            A[2 * i + 1, 2 * j], A[2 * i + 1, 2 * j + 1] = point.constrained[i, j], point.constrained[i, masses + j]
+        for j in range(2 * masses, inputs):
+            A[2 * i + 1, j] = point.constrained[i, j]
+
+
+@jit
+def fill_rest_series(q, w, point, rate):
+    """The same while a stop holds the gap: without v1 among the inputs. Takes A apart. rate: the fastest meanwhile."""
+    A, row, count = w.A, w.row, len(q.force) - 1
+    fill_constrained(A, point, len(q.force))
+    for j in range(count):
+        row[j] = A[1, j + 1 if j > 0 else 0]
+    for i in range(count):
+        for j in range(count):
+            A[i, j] = A[i + 1, j + 1 if j > 0 else 0] if i > 0 else 0.0
+    derive(A, row, count, q.resting[0])
+    for m in range(1, len(q.series)):
+        for j in range(count):
+            row[j] = 1.0 if j == 2 * m - 1 else 0.0
+        derive(A, row, count, q.resting[m])
+    q.rest_step = q.width if rate * q.width <= 1.0001 * WIDTH else q.width / math.ceil(rate * q.width / WIDTH)

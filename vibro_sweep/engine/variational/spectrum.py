@@ -9,7 +9,6 @@ import math
 import numpy as np
 
 from vibro_sweep.engine.compliant.law import is_at_rest
-from vibro_sweep.engine.point_tables import divergence_of
 from vibro_sweep.engine.simd.jit import inline, jit
 from vibro_sweep.engine.variational import tangent, tangent_at_rest, tangent_flight
 from vibro_sweep.engine.variational.orthonormal import CONDITION
@@ -163,7 +162,7 @@ def close_spectrum(e, o, w, plan, point, result):
     for j in range(len(spectrum)):
         error[j] += point.rounding if spectrum[j] > -np.inf else 0.0
     widen_forgotten(e.law, e.tangent[0], o.lane, result, time)
-    exact = divergence_of(point, w.paper, w.other) + o.log_volume / time
+    exact = point.divergence + o.log_volume / time
     if plan.order == 0:
         left, right = o.impacts_left, o.impacts_right
         if o.stops[2] == o.stops[3]:

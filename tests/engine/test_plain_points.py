@@ -1,0 +1,93 @@
+"""Points that a kernel sets up, from modes, are those that follow from the matrices with NumPy."""
+
+import numpy as np
+import pytest
+from support import slow_cases
+
+import vibro_sweep as vs
+from vibro_sweep.engine import any_points
+from vibro_sweep.engine.coordinates.contact import flight_matrix
+from vibro_sweep.oscillator.linear import stacked
+
+BITS_LOST = 2.0**-40  # what a detuning of 1e-3 of the frequency of the force, the least one drawn, may take of 2^-53
+FIELDS = (
+    "stiffness", "damping", "force", "constrained", "push", "P", "back", "steady", "middle", "swing", "confining",
+    "rate", "divergence", "rounding",
+)  # fmt: skip
+SAME = ("omega", "tau", "turned", "origin", "cells", "apart")
+
+
+def drawn(rng: np.random.Generator) -> vs.Oscillator:
+    """Masses in a row whose dampers are in proportion to their springs, or to the masses; any of them strikes, or some
+    combination of them."""
+    n = int(rng.integers(1, 7))
+    k, m, normal = rng.uniform(0.2, 2, n + 1), rng.uniform(0.5, 2, n), rng.normal(size=n)
+    if rng.random() < 0.5:
+        normal = np.eye(n)[rng.integers(n)]
+    stops = dict(R=0.8) if rng.random() < 0.6 else dict(k_stop=50.0)
+    return vs.Oscillator(
+        np.diag(m), np.diag(k[:n] + k[1:]) - np.diag(k[1:n], 1) - np.diag(k[1:n], -1),
+        rayleigh=[rng.choice([0, 0.05, 3.0]), rng.choice([0, 0.02, 1.0])], force=rng.normal(size=n),
+        force_cos=rng.normal(size=n), constant=0.1 * rng.normal(size=n) * (rng.random() < 0.5), contact_normal=normal,
+        omega=10 ** rng.uniform(-0.5, 0.3), tau=rng.uniform(0, 6), b=rng.uniform(0.2, 3), **stops,
+    )  # fmt: skip
+
+
+def both(system: vs.Oscillator, monkeypatch) -> tuple[np.void, np.void] | None:
+    """The point from the kernel, and the one from NumPy; None where the oscillator is not plain."""
+    q, asked = stacked([system.linear]), []
+    kind, other_points = any_points.kind_of(q), any_points._other_points
+
+    def counted(*given):
+        asked.append(given)
+        return other_points(*given)
+
+    monkeypatch.setattr(any_points, "_other_points", counted)
+    point = any_points.any_points(q, kind)
+    monkeypatch.undo()
+    return None if asked else (point[0], other_points(q, kind, True)[0])
+
+
+def in_the_frame(point: np.void) -> np.ndarray:
+    """What is left of `to` A `from` beside rotations and decay, over the largest terms of that product."""
+    A = flight_matrix(point["stiffness"], point["damping"])
+    left = point["to_frame"] @ A @ point["from_frame"]
+    terms = np.abs(point["to_frame"]) @ np.abs(A) @ np.abs(point["from_frame"])
+    planes = zip(point["frame_eta"], point["frame_square"], point["frame_scale"], strict=True)
+    for j, (eta, square, scale) in enumerate(planes):
+        left[2 * j : 2 * j + 2, 2 * j : 2 * j + 2] -= [[-eta, scale], [-square / scale, -eta]]
+    return np.abs(left).max() / terms.max()
+
+
+@pytest.mark.parametrize("count", [40, *slow_cases(500)])
+def test_a_plain_point_is_that_of_any_oscillator(count, monkeypatch):
+    rng, plain = np.random.default_rng(12), 0
+    for _ in range(count):
+        system = drawn(rng)
+        squares = np.linalg.eigvals(np.linalg.solve(system.linear.M, system.linear.K)).real
+        points = both(system, monkeypatch)
+        if points is None or np.abs(squares / system.omega**2 - 1).min() < 1e-3:
+            continue
+        plain += 1
+        for name in SAME:
+            assert np.array_equal(points[0][name], points[1][name]), (system, name)
+        for name in FIELDS:
+            one, other = (np.asarray(point[name]) for point in points)
+            assert np.abs(one - other).max() <= BITS_LOST * np.abs(other).max(), (system, name)
+        assert points[0]["constrained_rate"] >= points[1]["constrained_rate"] * (1 - BITS_LOST)
+        assert in_the_frame(points[0]) <= 2.0**-48, system
+    assert plain > 0.8 * count
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        dict(k=[0, 1, 0]), dict(k=[1, 1e5, 1]), dict(c=[0.3, 0.1, 0]), dict(offset=2), dict(omega=1e-3),
+        dict(omega=1.0, c=[0, 0, 0]),
+    ],
+    ids=["free mode", "far rates", "damping", "stops on one side", "slow force", "resonance"],
+)  # fmt: skip
+def test_what_is_not_plain_is_left_to_numpy(changes, monkeypatch):
+    numbers = dict(m=[1, 1], k=[1, 1, 1], c=[0.1, 0.1, 0.1], force=[1, 0], omega=0.7, b=1, R=0.8)
+    assert both(vs.Oscillator.named("chain", **numbers), monkeypatch) is not None
+    assert both(vs.Oscillator.named("chain", **numbers | changes), monkeypatch) is None
