@@ -104,3 +104,15 @@ def test_stiff_contacts_keep_the_digits_of_vectors(k):
         for part in (1, 1 + 2.0**-52, 1 - 2.0**-52)
     ]
     assert np.abs(np.array(found[1:]) - found[0]).max() < 3e-15
+
+
+@pytest.mark.slow
+def test_exponents_where_both_numbers_of_a_plane_move_the_gap():
+    """A damper alone holds the second mass. Beside a compliant stop that is never reached impacts are those without."""
+    machine = dict(m=[1.0, 1.5], k=[1.0, 0.0, 0.0], c=[0.02, 0.3, 0.0], force=[1.0, 0.0], omega=0.8)
+    alone = vs.Oscillator.named("chain", **machine, b=0.4, R=0.8, stops="right")
+    beside = vs.Oscillator.named(
+        "chain", **machine, stop_right=0.4, stop_left=-50.0, R=0.8, R_left=None, k_stop_left=100
+    )
+    one, other = (vs.lyapunov(system, None, 300, 300) for system in (alone, beside))
+    assert np.abs(one - other).max() <= (one.error + other.error).max() < 1e-9 and one[1] < -0.2

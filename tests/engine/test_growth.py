@@ -43,7 +43,7 @@ def test_the_sum_of_logarithms_of_many_thousands():
     rng, n = np.random.default_rng(1), 100_000
     dampings, times = rng.uniform(1e4, 1e5, n), rng.uniform(0, 1e-2, n)
     logs = np.stack([rng.normal(size=n), -dampings * times], 1)
-    tangents = new_lines(1, tangents_of(1, False, True))
+    tangents = new_lines(1, tangents_of(1, True))
     tangents["growth"] = 1.0
     exact = sum(map(Fraction, logs.ravel()))
     exact += sum(Fraction(c) * Fraction(w) for c, w in zip(dampings, times, strict=True))
@@ -62,7 +62,7 @@ def shrunken(rng, part):
 
 def test_the_last_vector_has_what_the_others_leave_of_the_volume():
     """Where one direction has shrunk to 1e-9 of the others ten digits of its length are lost in Z itself."""
-    rng, tangents = np.random.default_rng(2), new_lines(1, tangents_of(N, False, True))
+    rng, tangents = np.random.default_rng(2), new_lines(1, tangents_of(N, True))
     t, size = tangents[0], 2 * N
     Z, volumes = zip(*(shrunken(rng, 1e-9) for _ in range(LANES)), strict=True)
     t["Z"] = np.array(Z).transpose(1, 2, 0).reshape(size * size, LANES)

@@ -20,7 +20,7 @@ def orthonormalise_some(tangents, who):
 def test_vectors_are_those_of_a_qr_decomposition(masses):
     """Z = Q R with a positive diagonal of R, in the orbits asked for; the others are as before."""
     n, who = 2 * masses, np.array([True, True, False, True, False, False, True, True])
-    tangents = new_lines(1, tangents_of(masses, False))
+    tangents = new_lines(1, tangents_of(masses))
     t = tangents[0]
     Z = np.random.default_rng(masses).normal(size=(LANES, n, n)) * np.logspace(0, -2, n)
     growth = np.full((n, LANES), 3.0)

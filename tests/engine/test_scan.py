@@ -14,7 +14,7 @@ from support.decades import DECADES, EPS
 
 import vibro_sweep as vs
 from vibro_sweep.engine import one_system
-from vibro_sweep.engine.motion import ensemble, impacts, orbits, scan, together
+from vibro_sweep.engine.motion import crossing, ensemble, orbits, scan, together
 from vibro_sweep.engine.simd.jit import exported
 from vibro_sweep.engine.tables import exclusion
 from vibro_sweep.tables import outcomes as status
@@ -34,8 +34,8 @@ def first_impacts(e, stops, states, record, candidates, nothing):
         candidates[i] = scan.candidate_state(o, f.nodes)[0]
         # the first cell alone, with one event allowed: R = 1 makes a mass that creeps off the stop knock for ever
         orbits.set_state(o, f.nodes, stops, 0, 0.0, x)
-        o.events = impacts.MOST_EVENTS - 1
-        outcome = impacts.cross_cell(f, stops, o, records, t, 0, 0.0)
+        o.events = crossing.MOST_EVENTS - 1
+        outcome = crossing.cross_cell(None, f, stops, o, records, t, 0, 0.0)
         if o.impacts_logged == 0:
             orbits.set_state(o, f.nodes, stops, 0, 0.0, x)
             o.periods = 1

@@ -17,6 +17,7 @@ class Kind(NamedTuple):
     compliant: bool = False  # whether some stops are (engine/compliant/)
 
 
+@functools.cache
 def point_of(kind: Kind) -> np.dtype:
     """A point: an oscillator in contact coordinates q = P (x - x0)."""
     n = kind.masses

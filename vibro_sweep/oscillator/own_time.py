@@ -34,7 +34,7 @@ def in_own_time(q: Linear, rate: float) -> Linear:
 
 def _scaled(x, factor: float):
     """x / factor; what np.broadcast_to repeats stays so."""
-    if not np.ndim(x):
+    if not np.ndim(x) or all(x.strides):
         return x / factor
     return np.broadcast_to(x[unrepeated([x], np.ndim(x))] / factor, x.shape)
 

@@ -7,15 +7,16 @@ zero of delta, or of the force if the stop is left by force; that which delta ha
 
 import numpy as np
 
-from vibro_sweep.engine.compliant.distance import delta_of, set_delta
 from vibro_sweep.engine.compliant.law import lane_of
+from vibro_sweep.engine.motion.distance import delta_of, set_delta
 from vibro_sweep.engine.motion.energy_sums import PLACES, WEIGHTS, largest_value
-from vibro_sweep.engine.motion.first_contact import polished_contact, set_gap
-from vibro_sweep.engine.motion.impacts import size_at
+from vibro_sweep.engine.motion.first_contact import first_contact, set_gap, size_at
+from vibro_sweep.engine.motion.force_phase import copy_phase
 from vibro_sweep.engine.motion.rest import first_nonzero
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.tables.flight import ORDER, bound_third_over, evaluate
 from vibro_sweep.engine.tables.products import change_within
+from vibro_sweep.engine.tables.series import fill_taylor
 from vibro_sweep.engine.tables.twofold import add, multiply
 
 NOTHING = 1e-250  # a contact that has died away, which has no end
@@ -23,24 +24,26 @@ NOTHING = 1e-250  # a contact that has died away, which has no end
 
 @jit
 def enter(contact, o, stops, side):
-    """Set delta, w2, ... from the orbit's state."""
+    """Set delta, w2, ... and the phase of the force from the orbit's."""
     X, finer, y, low = o.X, o.finer, contact.y, contact.low
     y[0], low[0] = delta_of(o, stops, side), 0.0
     y[1], low[1] = side * X[1], side * finer[1]
     for j in range(2, len(y)):
         share, share_low = multiply(contact.push[j // 2], 0.0, X[j % 2], finer[j % 2])
         y[j], low[j] = add(X[j], finer[j], -share, -share_low)
+    copy_phase(o, contact)
 
 
 @jit
 def leave(contact, o, stops, side):
-    """Set the orbit's state from delta, w2, ..."""
+    """Set the orbit's state and phase from those of the contact."""
     X, finer, y, low = o.X, o.finer, contact.y, contact.low
     set_delta(o, stops, side, y[0])
     X[1], finer[1] = side * y[1], side * low[1]
     for j in range(2, len(y)):
         share, share_low = multiply(contact.push[j // 2], 0.0, X[j % 2], finer[j % 2])
         X[j], finer[j] = add(y[j], low[j], share, share_low)
+    copy_phase(contact, o)
 
 
 @jit
@@ -65,23 +68,9 @@ def dot_slow(contact, row):
 def load_contact(contact, side, omega):
     """Taylor series from y on."""
     G, c, y = contact.equations[lane_of(side)], contact.c, contact.y
-    masses, states, sin, cos = len(c), 2 * len(c), contact.phase[0], contact.phase[1]
-    for i in range(masses):
+    for i in range(len(c)):
         c[i, 0], c[i, 1] = y[2 * i], y[2 * i + 1]
-    for n in range(ORDER - 2):
-        share = 1.0 / ((n + 1.0) * (n + 2.0))
-        for i in range(masses):
-            if n == 0 and i == 0:
-                total = dot_slow(contact, G[0])
-            else:
-                total = G[i, states] * sin + G[i, states + 1] * cos
-                if n == 0:
-                    total += G[i, states + 2]
-                for j in range(1, masses):
-                    total += G[i, 2 * j] * c[j, n] + G[i, 2 * j + 1] * ((n + 1.0) * c[j, n + 1])
-            total += G[i, 0] * c[0, n] + G[i, 1] * ((n + 1.0) * c[0, n + 1])
-            c[i, n + 2] = total * share
-        sin, cos = omega * cos / (n + 1.0), -omega * sin / (n + 1.0)
+    fill_taylor(G, 0, dot_slow(contact, G[0]), contact.phase[0], contact.phase[1], 1.0, omega, c)
 
 
 @jit
@@ -109,7 +98,7 @@ def first_zero(contact, c, n, length):
         return np.inf
     if not contact.gap[0] > 0.0:
         return 0.0
-    return polished_contact(contact.gap, bound_third_over(contact.gap, length), length)
+    return first_contact(contact.gap, bound_third_over(contact.gap, length), length)
 
 
 @jit

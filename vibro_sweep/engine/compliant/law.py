@@ -13,11 +13,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.engine.compliant.distance import NEAR
 from vibro_sweep.engine.compliant.passage_tables import passages_of, set_passage
 from vibro_sweep.engine.compliant.relaxing import bring_stops
 from vibro_sweep.engine.compliant.slow_manifold import slow_manifold_fields
 from vibro_sweep.engine.compliant.vectors_set_apart import vectors_fields
+from vibro_sweep.engine.motion.distance import NEAR
 from vibro_sweep.engine.records import Kind
 from vibro_sweep.engine.simd.jit import inline, jit
 from vibro_sweep.engine.simd.lanes import LANES
@@ -228,6 +228,22 @@ def is_at_rest(law, o):
     if law is not None:
         return o.resting != 0.0 and law.orbits[o.lane].pressed == 0.0
     return o.resting != 0.0
+
+
+@inline
+def is_pressed(law, o):
+    """Whether the orbit is in contact with a compliant stop."""
+    if law is not None:
+        return law.orbits[o.lane].pressed != 0.0
+    return False
+
+
+@inline
+def is_compliant(law, o, side):
+    """Whether the stop on `side` is."""
+    if law is not None:
+        return law.orbits[o.lane].compliant[lane_of(side)] != 0
+    return False
 
 
 @jit

@@ -1,10 +1,10 @@
 """What happens to eight orbits that meet a stop in their cells: an impact, or the passage through a contact."""
 
 from vibro_sweep.engine.compliant.contact_rows import of_stop
-from vibro_sweep.engine.compliant.distance import finer_at, is_close_to_stop
 from vibro_sweep.engine.compliant.passage import pass_contacts
 from vibro_sweep.engine.compliant.passed_contacts import count_passed
 from vibro_sweep.engine.compliant.relaxing import bring_stops, relaxed_after
+from vibro_sweep.engine.motion.distance import finer_at, is_close_to_stop
 from vibro_sweep.engine.motion.orbits import round_off
 from vibro_sweep.engine.motion.section import end_period
 from vibro_sweep.engine.motion.strike import find_contact, gaps_at, rebound, strike

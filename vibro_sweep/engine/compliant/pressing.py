@@ -16,13 +16,13 @@ from vibro_sweep.engine.compliant.contact_series import (
     stored_energy,
     watch_contact,
 )
-from vibro_sweep.engine.compliant.force_phase import turn_phase
 from vibro_sweep.engine.compliant.law import lane_of
 from vibro_sweep.engine.compliant.relaxing import bring_stops
 from vibro_sweep.engine.compliant.slow_contact import fast_that_died, load_slow, slow_step
 from vibro_sweep.engine.compliant.tangent_in_contact import CONTINUED, RELAXED, UNRELAXED, carry_over_contact
 from vibro_sweep.engine.compliant.vectors_set_apart import fly_vectors_apart, set_vectors_apart
 from vibro_sweep.engine.motion.energy_sums import add_contact
+from vibro_sweep.engine.motion.force_phase import turn_phase
 from vibro_sweep.engine.motion.orbits import wall_of
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.tables.flight import evaluate

@@ -5,8 +5,9 @@ Without a preload it only comes near to that, and counts as relaxed where s is b
 
 import math
 
-from vibro_sweep.engine.simd.jit import jit
-from vibro_sweep.engine.tables.flight import ORDER, WIDTH
+from vibro_sweep.engine.motion.first_contact import first_contact
+from vibro_sweep.engine.simd.jit import inline, jit
+from vibro_sweep.engine.tables.flight import ORDER, WIDTH, bound_third_over
 
 GONE = 2.0**-60  # of where the stop was left
 ROUNDING = 2.0**-50
@@ -39,13 +40,41 @@ def place_at(contact, o, n, k, s, width):
     return relaxed_after(contact, n, u) if u > 0.0 else contact.relaxed[n]
 
 
-@jit
-def relax_by(contact, u, cell, offset):
-    """Let stops relax by the time u, which ends there. As the time of a flight it has more digits than times have."""
-    for n in range(2):
-        if contact.relaxed[n] > 0.0:
-            contact.relaxed[n] = relaxed_after(contact, n, u)
-            contact.cell[n], contact.offset[n] = cell, offset
+@inline
+def relax_stops(law, o, u, k, offset):
+    """Let stops relax by the time u, which ends at this offset of cell k. As the time of a flight it has more digits
+    than times have."""
+    if law is not None:
+        contact, cell = law.orbits[o.lane], o.period * o.cells + k
+        for n in range(2):
+            if contact.relaxed[n] > 0.0:
+                contact.relaxed[n] = relaxed_after(contact, n, u)
+                contact.cell[n], contact.offset[n] = cell, offset
+
+
+@inline
+def place_of_stop(law, o, side):
+    """delta where the stop on `side` is: 0 where it does not relax."""
+    if law is not None:
+        return law.orbits[o.lane].relaxed[1 if side > 0.0 else 0]
+    return 0.0
+
+
+@inline
+def series_of_stops(law, o, k, s, width, left, last):
+    """How far a series from offset s of cell k reaches beside stops that relax, which are brought there; and whether it
+    reaches to the end of the cell."""
+    if law is not None:
+        contact = law.orbits[o.lane]
+        bring_stops(contact, o, k, s, width)
+        for n in range(2):
+            if contact.relaxed[n] > 0.0:
+                reach = reach_of_relaxing(contact, n, left)
+                if s + reach == s < width:  # what is left of it takes no time
+                    contact.relaxed[n] = 0.0
+                else:
+                    left, last = reach, last and not reach < left
+    return left, last
 
 
 @jit
@@ -70,9 +99,10 @@ def reach_of_relaxing(contact, n, left):
 
 
 @jit
-def set_distance(contact, n, side, c, delta, order):
-    """Taylor coefficients of s - delta along a flight c of the gap, which begins with a zero of this order: without
-    it."""
+def distance_to_touch(contact, side, c, delta, order, left):
+    """Time of the first touch of a stop that relaxes, along a flight c of the gap; s - delta begins with a zero of this
+    order, which is divided out."""
+    n = 1 if side > 0.0 else 0
     rate, rest = rate_of_relaxing(contact, n), contact.preload[n] / contact.stiffness[n]
     term = contact.relaxed[n] + rest
     for m in range(ORDER):
@@ -82,6 +112,9 @@ def set_distance(contact, n, side, c, delta, order):
         term *= -rate / (m + 1.0)
     for m in range(ORDER - order, ORDER):
         contact.gap[m] = 0.0
+    if not contact.gap[0] > 0.0:
+        return 0.0
+    return first_contact(contact.gap, bound_third_over(contact.gap, left), left)
 
 
 @jit

@@ -4,12 +4,13 @@ import math
 
 from vibro_sweep.engine.compliant.contact_pieces import PIECES, TERMS
 from vibro_sweep.engine.compliant.contact_rows import from_contact, of_stop
-from vibro_sweep.engine.compliant.contacts_by_pieces import next_group, tables_of, value_and_slope
+from vibro_sweep.engine.compliant.piece_series import next_group, tables_of
 from vibro_sweep.engine.compliant.relaxing import GONE
 from vibro_sweep.engine.simd.columns import rows_of, weigh
 from vibro_sweep.engine.simd.jit import inline, noinline
 from vibro_sweep.engine.simd.lanes import LANES, alike, bits, lanes_of, lowest, number, select
 from vibro_sweep.engine.simd.memory import put, row
+from vibro_sweep.engine.tables.flight import evaluate_rows
 from vibro_sweep.engine.variational.growth import shrink_volumes
 from vibro_sweep.engine.variational.orthonormal import watch
 from vibro_sweep.engine.variational.tangent_flight import apply_flight
@@ -84,7 +85,7 @@ def set_flight(passage, who, right, time):
         v, at = time - p * h, n * PIECES + p
         for e in range(states):
             column = e - 1 if e > 0 else size - 1
-            x, slope = value_and_slope(passage.course, (at * size + column) * TERMS, v)
+            x, slope = evaluate_rows(passage.course, (at * size + column) * TERMS, TERMS, v)
             if p == 0 and e > 0:
                 x, slope = time * x, x + time * slope
             turned = sign if e > 1 else 0.0 * sign + 1.0
@@ -92,7 +93,7 @@ def set_flight(passage, who, right, time):
             put(E, states + e, select(now, turned * slope, row(E, states + e)))
             for m in range(1, masses):
                 first = (at * (masses - 1) + m - 1) * size + column
-                x, slope = value_and_slope(passage.others, first * TERMS, v)
+                x, slope = evaluate_rows(passage.others, first * TERMS, TERMS, v)
                 if e == 2 * m:
                     x = x + 1.0
                 if e == 2 * m + 1:
@@ -115,7 +116,7 @@ def keep_digits(passage, who, n, at, p, v, time, sign):
     by_force, first = row(passage.by_force, n) > 0.0, 2 * n * masses
     delta, speed, size = 0.0 * v, 0.0 * v, 0.0 * v
     for e in range(1, inputs):
-        x, slope = value_and_slope(passage.course, (at * (inputs + 1) + e) * TERMS, v)
+        x, slope = evaluate_rows(passage.course, (at * (inputs + 1) + e) * TERMS, TERMS, v)
         if p == 0:
             x, slope = time * x, x + time * slope
         delta, speed = delta + x * row(touch, e), speed + slope * row(touch, e)

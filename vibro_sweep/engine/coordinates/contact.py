@@ -155,8 +155,8 @@ def rest_force(q: Linear, origin: np.ndarray) -> np.ndarray:
 
 def distance(q: Linear, origin: np.ndarray, gap: np.ndarray) -> np.ndarray:
     """`gap` (...) as seen from x0, rounded once."""
-    result = np.array(gap)
-    for place in map(tuple, np.argwhere(origin.any(-1) & np.isfinite(gap))):
+    result, moved = np.array(gap), origin.any(-1)
+    for place in map(tuple, np.argwhere(moved & np.isfinite(gap)) if moved.any() else ()):
         result[place] = exact_sum([gap[place], *(-q.normal[place])], [1.0, *origin[place]])
     return result
 

@@ -9,6 +9,7 @@ of `any_points` but for last digits, at a tenth of the time. By its modes,
 the steady motion is the sum of eq. (7), the frame of tangent vectors that of the psi_j themselves.
 """
 
+import functools
 import math
 
 import numpy as np
@@ -24,6 +25,7 @@ SLOWEST_SQUARE = 1e-10  # square of a natural frequency over that of the force, 
 IN_RESONANCE = 1e-10  # of omega_j^2 + omega^2: a dynamic stiffness below which it is not
 
 
+@functools.cache
 def machine_of(masses: int) -> np.dtype:
     """The numbers of an oscillator: the fields `MOTION` of `Linear`, in their order."""
     n = masses
@@ -31,6 +33,7 @@ def machine_of(masses: int) -> np.dtype:
     return np.dtype([(name, float, shape) for name, shape in [*fields, ("sine", (n,)), ("cosine", (n,)), ("tau", ())]])
 
 
+@functools.cache
 def modes_of(masses: int) -> np.dtype:
     """What a point is set up from: modes, of which each column of a matrix is one, and room for sums."""
     n = masses
@@ -45,7 +48,9 @@ def modes_of(masses: int) -> np.dtype:
         ("damping", (n,)),  # 2 eta_j, and
         ("damping_error", (n,)),
         ("order", (n,)),  # of planes in the frame: which mode each is
-        ("turning", (2, n)),  # of the steady motion at t = 0: real and imaginary part
+        ("steady", (2, n)),  # a and b of the steady motion a sin(omega t + tau) + b cos(omega t + tau),
+        ("turning", (2, n)),  # real and imaginary part of the same at t = 0, and
+        ("left", (2, n)),  # force that is left beside it
         ("rest", (n,)),  # the state at which the constant force is balanced
         ("compliance", (n,)),  # K^-1 n
         ("row", (n,)),  # scratch
@@ -262,27 +267,18 @@ def set_steady(q, p, w):
     hold all, and no mode is in resonance."""
     n, omega, sin, cos = len(q.M), q.omega, math.sin(q.tau), math.cos(q.tau)
     for i in range(n):
-        w.rest[i], w.compliance[i], w.turning[0, i], w.turning[1, i] = q.constant[i], q.normal[i], 0.0, 0.0
+        w.rest[i], w.compliance[i], w.steady[0, i], w.steady[1, i] = q.constant[i], q.normal[i], 0.0, 0.0
         for j in range(n):
             w.A[i, j] = q.K[i, j]
-    if not factorise(w.A, n):
+    if not factorise(w.A, n) or is_resonant(q, w):
         return False
     solve(w.A, n, w.rest)
     solve(w.A, n, w.compliance)
-    for j in range(n):
-        # (7): xi = A_j sin + B_j cos, for a force of sine and of cosine
-        detuning, damping = w.square[j] - omega * omega, w.damping[j] * omega
-        if math.hypot(detuning, damping) <= IN_RESONANCE * (w.square[j] + omega * omega):
-            return False
-        size = detuning * detuning + damping * damping
-        sine = cosine = 0.0
-        for i in range(n):
-            sine += w.shape[i, j] * q.sine[i]
-            cosine += w.shape[i, j] * q.cosine[i]
-        A, B = (detuning * sine + damping * cosine) / size, (detuning * cosine - damping * sine) / size
-        for i in range(n):  # x = Re(turning e^{i omega t})
-            w.turning[0, i] += w.shape[i, j] * (A * sin + B * cos)
-            w.turning[1, i] += w.shape[i, j] * (B * sin - A * cos)
+    for _ in range(2):  # once more for what rounding has left
+        add_steady(q, w)
+    for i in range(n):  # x = Re(turning e^{i omega t})
+        a, b = w.steady[0, i], w.steady[1, i]
+        w.turning[0, i], w.turning[1, i] = a * sin + b * cos, b * sin - a * cos
     real = imaginary = compliance = p.middle = 0.0
     for i in range(n):
         real += q.normal[i] * w.turning[0, i]
@@ -304,6 +300,40 @@ def set_steady(q, p, w):
             p.confining[2 * i, 2 * j], p.confining[2 * i + 1, 2 * j + 1] = compliance * stiffness, compliance * mass
             p.confining[2 * i, 2 * j + 1] = p.confining[2 * i + 1, 2 * j] = 0.0
     return True
+
+
+@jit
+def is_resonant(q, w):
+    """Whether the force has the frequency of a mode that nothing damps, or nearly."""
+    for j in range(len(w.square)):
+        stiffness = math.hypot(w.square[j] - q.omega * q.omega, w.damping[j] * q.omega)
+        if stiffness <= IN_RESONANCE * (w.square[j] + q.omega * q.omega):
+            return True
+    return False
+
+
+@jit
+def add_steady(q, w):
+    """Add to the steady motion a sin + b cos what balances the force that is left beside it."""
+    n, omega, a, b = len(q.M), q.omega, w.steady[0], w.steady[1]
+    for i in range(n):
+        w.left[0, i] = q.sine[i] + omega * omega * q.M[i, i] * a[i]
+        w.left[1, i] = q.cosine[i] + omega * omega * q.M[i, i] * b[i]
+        for k in range(n):
+            w.left[0, i] -= q.K[i, k] * a[k] - omega * q.C[i, k] * b[k]
+            w.left[1, i] -= q.K[i, k] * b[k] + omega * q.C[i, k] * a[k]
+    for j in range(n):
+        # (7): xi = A_j sin + B_j cos, for a force of sine and of cosine
+        detuning, damping = w.square[j] - omega * omega, w.damping[j] * omega
+        size = detuning * detuning + damping * damping
+        sine = cosine = 0.0
+        for i in range(n):
+            sine += w.shape[i, j] * w.left[0, i]
+            cosine += w.shape[i, j] * w.left[1, i]
+        A, B = (detuning * sine + damping * cosine) / size, (detuning * cosine - damping * sine) / size
+        for i in range(n):
+            a[i] += w.shape[i, j] * A
+            b[i] += w.shape[i, j] * B
 
 
 @jit

@@ -9,15 +9,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.engine.compliant.crossing import cross_cell_with_law
-from vibro_sweep.engine.compliant.distance import is_close
 from vibro_sweep.engine.compliant.meeting import finish_meeting, is_open, meet_stops
 from vibro_sweep.engine.compliant.passed_contacts import add_passed, clear_passed
 from vibro_sweep.engine.compliant.tangent_passage import carry_through
 from vibro_sweep.engine.motion.coast import fly_periods, is_clear
+from vibro_sweep.engine.motion.crossing import cross_cell
 from vibro_sweep.engine.motion.discontinuity import map_period
+from vibro_sweep.engine.motion.distance import is_close
 from vibro_sweep.engine.motion.energy_sums import are_wanted
-from vibro_sweep.engine.motion.impacts import cross_cell, watch_rebound
+from vibro_sweep.engine.motion.impacts import watch_rebound
 from vibro_sweep.engine.motion.orbits import add_count, begin_free_flight, keep_start, load_constants, take_samples
 from vibro_sweep.engine.motion.scan import (
     candidate_state,
@@ -62,14 +62,6 @@ def set_node_state(o, X):
 
 
 @inline
-def cross(law, f, stops, o, records, t, k, s):
-    """Follow the orbit to the end of its cell. law: None where all stops are rigid: the other way is not compiled."""
-    if law is not None:
-        return cross_cell_with_law(law, f, stops, o, records, t, k, s)
-    return cross_cell(f, stops, o, records, t, k, s)
-
-
-@inline
 def is_behind(law, o):
     """Whether the orbit, at a node, is behind a compliant stop: the search for the next contact begins before it."""
     if law is not None:
@@ -90,7 +82,7 @@ def resolve_events(e, o, f, readings):
             return
     while True:
         events, rested = o.events, o.offset > 0.0 or o.resting != 0.0 or is_close(e.law, o, q)
-        o.status = cross(e.law, f, stops_of(o), o, records_of(e, o), e.tangent[0], o.cell, o.offset)
+        o.status = cross_cell(e.law, f, stops_of(o), o, records_of(e, o), e.tangent[0], o.cell, o.offset)
         free = not (rested or o.events > events)
         o.cell += 1
         if not free:

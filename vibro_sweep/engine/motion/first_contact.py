@@ -54,11 +54,8 @@ def set_gap(g, c, gap, side, n):
 
 
 @jit
-def first_contact(g, third, rest):
-    """First root in (0, rest] of the polynomial g (Taylor coefficients), with g(0) > 0.
-
-    Infinite if there is none, NaN if `STEPS` steps do not tell. third: bound on the third derivative up to `rest`.
-    """
+def certified_contact(g, third, rest):
+    """`first_contact`, to a few roundings of g."""
     u, length = 0.0, rest
     for _ in range(STEPS):
         # Horner's scheme for p = sum g_n u^(n-1), p' and p''/2: what g has lost so far keeps its digits when u is tiny
@@ -94,10 +91,13 @@ def first_contact(g, third, rest):
 
 
 @jit
-def polished_contact(g, third, rest):
-    """`first_contact` and a step of Newton's method: it ends within four roundings of g, which add up in many short
-    flights that follow each other."""
-    root = first_contact(g, third, rest)
+def first_contact(g, third, rest):
+    """First root in (0, rest] of the polynomial g (Taylor coefficients), with g(0) > 0.
+
+    Infinite if there is none, NaN if `STEPS` steps do not tell. third: bound on the third derivative up to `rest`. It
+    ends with a step of Newton's method: roundings add up in many short flights that follow each other.
+    """
+    root = certified_contact(g, third, rest)
     if not 0.0 < root < np.inf:
         return root
     p, dp = g[ORDER - 1], 0.0
@@ -107,3 +107,12 @@ def polished_contact(g, third, rest):
     rate = p + root * dp
     found = root - (g[0] + root * p) / rate if rate < 0.0 else root
     return found if 0.0 < found <= rest else root
+
+
+@jit
+def size_at(c, u):
+    """The sum of the sizes of the terms of the polynomial c at u."""
+    size = 0.0
+    for n in range(ORDER - 1, -1, -1):
+        size = size * u + abs(c[n])
+    return size

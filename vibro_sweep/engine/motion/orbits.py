@@ -1,5 +1,6 @@
 """The moving state of an orbit, what is counted of it, and what is recorded of it."""
 
+import functools
 import math
 from typing import NamedTuple
 
@@ -36,6 +37,7 @@ def restitution_of(stops, side):
     return stops.R_right if side > 0.0 else stops.R_left
 
 
+@functools.cache
 def orbit_of(masses: int, constant: bool = False) -> np.dtype:
     """The record of one orbit: its motion, what is counted of it, and what it has written into its `Records`."""
     width = width_of(masses, constant)
@@ -73,9 +75,10 @@ def orbit_of(masses: int, constant: bool = False) -> np.dtype:
         ("resting", float),  # side of the stop that M1 rests on, or 0
         ("fastest", float),  # largest |v1| before an impact since the start or the last rest
         ("c", float, (masses, ORDER)),  # Taylor coefficients of x1, x2, ...; of M1 at rest the free acceleration
-        ("series_start", float, (width,)),  # what series begin with while M1 rests: x1, x2, v2, x3, ..., sin, cos
         ("gap", float, (ORDER,)),  # of the gap to a stop, or of the free acceleration at rest (contact.py)
         ("finer", float, (2 * masses,)),  # what rounding left of X, from series to series (`advance_exactly`)
+        ("phase", float, 2),  # sin and cos of the force from event to event (force_phase.py), and
+        ("phase_low", float, 2),  # what rounding leaves of them
     ]
     counts = [
         ("period", np.int64),

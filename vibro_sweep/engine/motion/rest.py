@@ -9,6 +9,7 @@ from vibro_sweep.engine.motion.first_contact import first_contact, set_gap
 from vibro_sweep.engine.motion.orbits import add_change, restitution_of, take_samples
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.tables.flight import ORDER, bound_third_over, evaluate
+from vibro_sweep.engine.tables.series import fill_taylor
 from vibro_sweep.engine.tables.twofold import add
 from vibro_sweep.engine.variational import tangent_at_rest, tangent_flight
 
@@ -49,36 +50,48 @@ def begin_rest(f, o, records, t, k, s, side, w):
         q = f.oscillator[0]
         tangent_flight.fly_to(t, o.lane, q, f.nodes, k, s - w)
         tangent_at_rest.rest(t, o.lane, q.kappa, q.push)
-        carry_tangent(t, o.lane, q, w)
+        carry_tangent(t, o, q, w)
         t.cell[o.lane], t.offset[o.lane] = k, s
 
 
 @jit
 def load_rest(q, o, sin, cos):
     """Series of the free acceleration of M1 in c[0], and of x2, ... in the other rows."""
-    states, count, start, w = 2 * len(o.c), len(q.force) - 1, o.series_start, q.resting
-    start[0] = o.X[0]
-    for j in range(2, states):
-        start[j - 1] = o.X[j]
-    start[states - 1], start[states], start[states + 1] = sin, cos, 1.0
-    for i in range(len(o.c)):
-        for n in range(ORDER):
-            total = w[i, 0, n] * start[0] + w[i, 1, n] * start[1]
-            for j in range(2, count - 1, 2):
-                total += w[i, j, n] * start[j] + w[i, j + 1, n] * start[j + 1]
-            o.c[i, n] = total + w[i, count - 1, n] * start[count - 1] if count % 2 == 1 else total
+    c, a, X, states = o.c, q.force, o.X, 2 * len(o.c)
+    for n in range(1, ORDER):
+        c[0, n] = 0.0
+    for i in range(len(c)):
+        c[i, 0] = X[2 * i]
+        if i > 0:
+            c[i, 1] = X[2 * i + 1]
+    fill_taylor(q.held, 1, 0.0, sin, cos, 1.0, q.omega, c)
+    start = a[0] * c[0, 0] + a[states + 2] if len(a) > states + 2 else a[0] * c[0, 0]
+    for n in range(ORDER):
+        total = a[states] * sin + a[states + 1] * cos
+        for j in range(1, len(c)):
+            total += a[2 * j] * c[j, n]
+            if n < ORDER - 1:
+                total += a[2 * j + 1] * ((n + 1.0) * c[j, n + 1])
+        c[0, n] = total + start if n == 0 else total
+        sin, cos = q.omega * cos / (n + 1.0), -q.omega * sin / (n + 1.0)
 
 
 @jit
-def carry_tangent(t, i, q, w):
-    """Tangent vectors over a rest of the time w within a cell."""
+def carry_tangent(t, o, q, w):
+    """Tangent vectors over a rest of the time w within a cell. Takes the series of the orbit for scratch."""
+    c = o.c
     while w > 0.0:
         step = min(w, q.rest_step)
         w -= step
-        for m in range(1, len(q.series)):
-            for j in range(2, len(t.growth)):
-                t.constrained[2 * m, j], t.constrained[2 * m + 1, j] = evaluate(q.resting[m, j - 1], step)
-        tangent_at_rest.release(t, i)
+        for column in range(2, 2 * len(c)):
+            for i in range(len(c)):
+                for n in range(ORDER):
+                    c[i, n] = 0.0
+            c[column // 2, column % 2] = 1.0
+            fill_taylor(q.held, 1, 0.0, 0.0, 0.0, 0.0, q.omega, c)
+            for i in range(1, len(c)):
+                t.constrained[2 * i, column], t.constrained[2 * i + 1, column] = evaluate(c[i], step)
+        tangent_at_rest.release(t, o.lane)
 
 
 @jit
@@ -103,13 +116,14 @@ def first_release(o, left, most):
 
 
 @jit
-def stay_at_rest(f, o, records, t, k, s, sin, cos, most):
+def stay_at_rest(f, o, records, t, k, s, most):
     """M1 rests from offset s of cell k on. Returns the time to the release, infinite if not in this cell.
 
     most : of the acceleration into the stop that this holds; infinite of a rigid one
     """
-    q, X = f.oscillator[0], o.X
-    sin_there, cos_there, w, w_low = sin, cos, 0.0, 0.0
+    q = f.oscillator[0]
+    sin, cos, w, w_low = o.phase[0], o.phase[1], 0.0, 0.0
+    sin_there, cos_there = sin, cos
     while True:
         load_rest(q, o, sin_there, cos_there)
         left = (q.width - s - w) - w_low
@@ -119,22 +133,16 @@ def stay_at_rest(f, o, records, t, k, s, sin, cos, most):
         end = min(d, left)
         take_samples(o, records, k, s + w, s + w + end)
         add_flight(records.sums, o, end)
-        if q.exact:
-            w, w_low = add(w, w_low, end, 0.0)
-        else:
-            w += end
+        w, w_low = add(w, w_low, end, 0.0)
         for m in range(1, len(o.c)):
-            if q.exact:
-                add_change(o, m, end)
-            else:
-                X[2 * m], X[2 * m + 1] = evaluate(o.c[m], end)
+            add_change(o, m, end)
         swing, turn = math.sin(q.omega * w), math.cos(q.omega * w)
         sin_there, cos_there = sin * turn + cos * swing, cos * turn - sin * swing
         if last or not d == np.inf:  # NaN, too, is passed on
             break
     o.rest_time += w
     if t.wanted:
-        carry_tangent(t, o.lane, q, w)
+        carry_tangent(t, o, q, w)
         t.cell[o.lane], t.offset[o.lane] = k, s + w
     if d < np.inf:
         o.resting = 0.0

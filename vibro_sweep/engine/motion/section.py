@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from vibro_sweep.engine.compliant.distance import keep_finer
+from vibro_sweep.engine.motion.distance import keep_finer
 from vibro_sweep.engine.motion.orbits import begin_free_flight
 from vibro_sweep.engine.simd.jit import inline, noinline
 from vibro_sweep.engine.simd.lanes import select

@@ -4,6 +4,7 @@ What impacts.py resolves event by event is left alone: two contacts in a cell, a
 the cell, chatter and rest.
 """
 
+import functools
 import math
 
 import numpy as np
@@ -14,7 +15,7 @@ from vibro_sweep.engine.simd.lanes import LANES, bits, select
 from vibro_sweep.engine.simd.memory import put, record, row
 from vibro_sweep.engine.tables import flight
 from vibro_sweep.engine.tables.economy import FEWER_TERMS, TERMS, TO_FEWER_TERMS, TO_TERMS, economise
-from vibro_sweep.engine.tables.flight import inputs_of, width_of
+from vibro_sweep.engine.tables.flight import evaluate_rows, inputs_of, width_of
 
 TAIL = 8  # terms from here on are bounded together
 ROUGH = 10  # terms that bring the search so near to the contact that one look with all of them suffices, as a rule
@@ -23,6 +24,7 @@ MARGIN = 2.0**-45  # of x1 and its terms: an extremum this near to a stop is lef
 LOOKS = 4  # at the gap, each followed by a step towards the contact
 
 
+@functools.cache
 def strikes_of(masses: int, constant: bool = False) -> np.dtype:
     """The record of eight orbits that may strike, one column each."""
     states, inputs, width = 2 * masses, inputs_of(masses, constant), width_of(masses, constant)
@@ -184,23 +186,6 @@ def descend(c, u, gap, side, steepest, width, wanted):
     return d, speed, acceleration, found
 
 
-@inline
-def position_and_speed(c, first, u):
-    """Polynomial at u, with the coefficients in `FEWER_TERMS` rows from `first` on, and its derivative.
-
-    Even and odd terms go side by side.
-    """
-    v, last = u * u, first + FEWER_TERMS - 1
-    slope_odd, slope_even = row(c, last), row(c, last - 1)
-    odd, even = slope_odd * v + row(c, last - 2), slope_even * v + row(c, last - 3)
-    for n in range(last - 5, first - 1, -2):
-        slope_odd = slope_odd * v + odd
-        odd = odd * v + row(c, n + 1)
-        slope_even = slope_even * v + even
-        even = even * v + row(c, n)
-    return even + u * odd, odd + 2.0 * u * (slope_even + u * slope_odd)
-
-
 @jit
 def clear_counts(strikes):
     """Count impacts from here on."""
@@ -237,7 +222,7 @@ def land(strikes, z, impulse, rest):
     """X at the end of the cell: of the motion as if there were no stop, and what the impulse has done by then."""
     landing, states = strikes.landing, len(strikes.landing)
     for m in range(states // 2):
-        x, v = position_and_speed(strikes.impulses, m * FEWER_TERMS, rest)
+        x, v = evaluate_rows(strikes.impulses, m * FEWER_TERMS, FEWER_TERMS, rest)
         put(landing, 2 * m, weigh(strikes.end, 2 * m, states, z) + impulse * x)
         put(landing, 2 * m + 1, weigh(strikes.end, 2 * m + 1, states, z) + impulse * v)
     put_transposed(strikes.X, landing)

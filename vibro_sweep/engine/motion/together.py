@@ -39,7 +39,7 @@ class Readings(NamedTuple):
 
 def new_ensemble(cells: int, kind: Kind, impacts: int = 0, rests: int = 0, samples: int = 0) -> Ensemble:
     """Orbits of oscillators with at most so many cells, and room for what is kept of each."""
-    masses, constant, paper = kind[:3]
+    masses, constant, compliant = kind
     halt = halt_of_thread()
     orbits = new_lines(LANES, orbit_of(masses, constant))
     orbits["lane"] = np.arange(LANES)
@@ -47,7 +47,7 @@ def new_ensemble(cells: int, kind: Kind, impacts: int = 0, rests: int = 0, sampl
         new_flight(LANES, cells, masses, constant),
         orbits,
         new_lines(1, strikes_of(masses, constant)),
-        new_lines(1, tangents_of(masses, paper, kind.compliant)),
+        new_lines(1, tangents_of(masses, compliant)),
         new_records(LANES, impacts, rests, samples, masses),
         halt,
         new_law(kind, halt),

@@ -14,8 +14,8 @@ from vibro_sweep.engine.tables.products import fill_products
 from vibro_sweep.engine.tables.series import (
     fill_equations,
     fill_flight_series,
+    fill_held,
     fill_impulse,
-    fill_rest_series,
     set_grid,
 )
 
@@ -49,10 +49,9 @@ def build(f, w, point):
     fill_equations(w.A, point, len(q.force))
     fill_flight_series(q, w)
     fill_impulse(q, point)
-    fill_rest_series(q, w, point, max(point.omega, point.constrained_rate))
+    fill_held(q, point, max(point.omega, point.constrained_rate))
     fill_products(q, f.nodes, point, w.twofold)
     fill_forced_motion(q, f.nodes, point.begin)
-    q.exact = q.stiff and point.apart
     if q.stiff:
         fill_stiff_exclusion(q, f.nodes, f.scan, point, w.turned)
     else:

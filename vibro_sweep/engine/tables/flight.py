@@ -9,14 +9,15 @@ it exists in resonance without damping too, and is nowhere much larger than the 
 `cells` equal cells; E and r are tabulated at their nodes, once for each set of parameters.
 """
 
+import functools
 import math
 from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.engine.simd.jit import jit
+from vibro_sweep.engine.simd.jit import inline, jit
 from vibro_sweep.engine.simd.lanes import LANES, SINGLES, number
-from vibro_sweep.engine.simd.memory import new_lines, record
+from vibro_sweep.engine.simd.memory import new_lines, record, row
 
 ORDER = 16  # Taylor coefficients of a cell: with rate * width <= WIDTH the first one left out is below 2^-53 / 1000
 WIDTH = 0.5
@@ -37,14 +38,13 @@ def width_of(masses: int, constant: bool = False) -> int:
     return LANES * (-(-inputs_of(masses, constant) // LANES))
 
 
+@functools.cache
 def oscillator_of(masses: int, constant: bool = False) -> np.dtype:
     """The record of one oscillator. Structured arrays go to kernels by one pointer, and need no reference counts."""
     states, inputs = 2 * masses, inputs_of(masses, constant)
     fields = [
         # rows of whole cache lines come first
         ("series", float, (masses, inputs, ORDER)),  # Taylor coefficients of x1, x2, ... of the inputs
-        # while M1 rests, of (x1, x2, v2, x3, ..., sin, cos): its free acceleration, and x2, ...
-        ("resting", float, (masses, inputs - 1, ORDER)),
         ("impulse", float, (masses, ORDER)),  # Taylor coefficients of x1, x2, ... after a unit impulse on M1
         ("reach", float, (ORDER,)),  # weights of |c_n| in a bound on |x1 - c_0| over a cell
         ("third", float, (ORDER,)),  # weights of |c_n| in a bound on the third derivative over a cell, and
@@ -70,7 +70,9 @@ def oscillator_of(masses: int, constant: bool = False) -> np.dtype:
         ("remainder", float, (states + 1,)),  # bound on |x1 - cubic| in any cell, for unit X - r and for r
         ("slow", float, (states,)),  # part of the slow modes in x1; of a stiff system
         ("force", float, (inputs,)),  # acceleration of M1 as a function of them
-        ("rest_step", float),  # width of the series `resting`
+        # (x1'', x2'', ..) by (x1, v1, x2, .., sin, cos, 1) while M1 rests, without the first row; and
+        ("held", float, (masses, states + 3)),
+        ("rest_step", float),  # how far a series reaches then
         ("impulse_third", float),  # bound on |d3 x1/du3| over a cell after a unit impulse on M1
         ("vanishing", np.int64),  # of tangent.py: directions that a flight over a cell takes below the others' rounding
         ("most_cells_mixed", np.int64),  # cells that tangent vectors may fly between orthonormalisations, and
@@ -79,8 +81,7 @@ def oscillator_of(masses: int, constant: bool = False) -> np.dtype:
         ("frame_square", float, (masses,)),  # omega_dj^2
         ("to_frame", float, (states, states)),
         ("from_frame", float, (states, states)),
-        ("stiff", np.bool_),  # cells do not resolve every rate, and
-        ("exact", np.bool_),  # what rounding leaves is kept from series to series (orbits.advance_exactly)
+        ("stiff", np.bool_),  # cells do not resolve every rate
         ("largest", float),  # |x1| of the motion r
         ("steady", float, (states,)),  # of coast.py, like all that follow: the steady motion at node 0
         ("middle", float),  # of the gap of the steady motion, and
@@ -92,6 +93,7 @@ def oscillator_of(masses: int, constant: bool = False) -> np.dtype:
     return record(fields)
 
 
+@functools.cache
 def node_of(masses: int, constant: bool = False) -> np.dtype:
     """The record of one node of the grid."""
     states, width, inputs = 2 * masses, width_of(masses, constant), inputs_of(masses, constant)
@@ -170,6 +172,20 @@ def evaluate(c, u):
         odd = odd * v + c[n + 1]
         slope_even = slope_even * v + even
         even = even * v + c[n]
+    return even + u * odd, odd + 2.0 * u * (slope_even + u * slope_odd)
+
+
+@inline
+def evaluate_rows(c, first, terms, u):
+    """`evaluate` of eight polynomials, whose coefficients are so many rows from `first` on."""
+    v, last = u * u, first + terms - 1
+    slope_odd, slope_even = row(c, last), row(c, last - 1)
+    odd, even = slope_odd * v + row(c, last - 2), slope_even * v + row(c, last - 3)
+    for n in range(last - 5, first - 1, -2):
+        slope_odd = slope_odd * v + odd
+        odd = odd * v + row(c, n + 1)
+        slope_even = slope_even * v + even
+        even = even * v + row(c, n)
     return even + u * odd, odd + 2.0 * u * (slope_even + u * slope_odd)
 
 

@@ -96,29 +96,36 @@ def fill_impulse(q, point):
 
 
 @jit
-def fill_constrained(A, point, inputs):
-    """z' = A z while a stop holds the gap."""
-    masses = len(point.damping)
+def fill_held(q, point, rate):
+    """Accelerations of the masses while a stop holds the gap. rate: the fastest meanwhile."""
+    masses = len(q.held)
     for i in range(1, masses):
         for j in range(masses):
-            A[2 * i + 1, 2 * j], A[2 * i + 1, 2 * j + 1] = point.constrained[i, j], point.constrained[i, masses + j]
-        for j in range(2 * masses, inputs):
-            A[2 * i + 1, j] = point.constrained[i, j]
+            q.held[i, 2 * j], q.held[i, 2 * j + 1] = point.constrained[i, j], point.constrained[i, masses + j]
+        for j in range(2 * masses, 2 * masses + 3):
+            q.held[i, j] = point.constrained[i, j]
+    q.rest_step = q.width if rate * q.width <= 1.0001 * WIDTH else q.width / math.ceil(rate * q.width / WIDTH)
 
 
 @jit
-def fill_rest_series(q, w, point, rate):
-    """The same while a stop holds the gap: without v1 among the inputs. Takes A apart. rate: the fastest meanwhile."""
-    A, row, count = w.A, w.row, len(q.force) - 1
-    fill_constrained(A, point, len(q.force))
-    for j in range(count):
-        row[j] = A[1, j + 1 if j > 0 else 0]
-    for i in range(count):
-        for j in range(count):
-            A[i, j] = A[i + 1, j + 1 if j > 0 else 0] if i > 0 else 0.0
-    derive(A, row, count, q.resting[0])
-    for m in range(1, len(q.series)):
-        for j in range(count):
-            row[j] = 1.0 if j == 2 * m - 1 else 0.0
-        derive(A, row, count, q.resting[m])
-    q.rest_step = q.width if rate * q.width <= 1.0001 * WIDTH else q.width / math.ceil(rate * q.width / WIDTH)
+def fill_taylor(G, first, slow, sin, cos, one, omega, c):
+    """Taylor coefficients c (N, ORDER) of y'' = G (y1, y1', y2, .., sin, cos, 1) in the rows from `first` on; those of
+    y and y' are there, and all of the rows before.
+
+    slow : what row 0 begins with beside y1 and y1'. one : 1, or 0 where nothing but y acts
+    """
+    masses, states = len(c), 2 * len(c)
+    for n in range(ORDER - 2):
+        share = 1.0 / ((n + 1.0) * (n + 2.0))
+        for i in range(first, masses):
+            if n == 0 and i == 0:
+                total = slow
+            else:
+                total = G[i, states] * sin + G[i, states + 1] * cos
+                if n == 0:
+                    total += G[i, states + 2] * one
+                for j in range(1, masses):
+                    total += G[i, 2 * j] * c[j, n] + G[i, 2 * j + 1] * ((n + 1.0) * c[j, n + 1])
+            total += G[i, 0] * c[0, n] + G[i, 1] * ((n + 1.0) * c[0, n + 1])
+            c[i, n + 2] = total * share
+        sin, cos = omega * cos / (n + 1.0), -omega * sin / (n + 1.0)

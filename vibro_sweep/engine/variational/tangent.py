@@ -8,6 +8,8 @@ only converge like 1/t. (Overdamped: times a symmetric matrix, and exact as soon
 Their flight is in tangent_flight.py. `who` is the mask of the orbits to which something happens; i is one of them.
 """
 
+import functools
+
 import numpy as np
 
 from vibro_sweep.engine.simd.jit import exported, inline, jit, noinline
@@ -21,11 +23,11 @@ from vibro_sweep.engine.variational.tangent_flight import apply_flight, catch_up
 ALIKE = 10.0  # difference of the logarithms of two growths that need not be distinguished
 
 
-def tangents_of(masses: int, paper: bool, compliant: bool = False) -> np.dtype:
+@functools.cache
+def tangents_of(masses: int, compliant: bool = False) -> np.dtype:
     """The record of the tangent vectors of eight orbits, one column each; n vectors of n numbers, n = 2 N.
 
     compliant : with stops that may relax, whose places are numbers of a vector, too
-    paper : its oscillator, whose modes move the gap by their first numbers alone: kernels for it do not ask
     """
     n = 2 * masses
     pairs, apart = n * (n - 1) // 2, n if compliant else 0
@@ -73,9 +75,7 @@ def tangents_of(masses: int, paper: bool, compliant: bool = False) -> np.dtype:
         ("forgotten", float, (n if compliant else 1, LANES)),
         ("wanted", np.bool_),  # else nothing is computed
         ("collected", np.bool_),
-        # [1]: whether both numbers of some mode move the gap. Of the paper's oscillator none does: there the field has
-        # one entry, from which the compiler knows that kernels need not ask
-        ("both", np.int64, (1 if paper else 2,)),
+        ("both", np.bool_),  # whether both numbers of some mode move the gap
     ]
     return record(fields)
 
@@ -99,8 +99,8 @@ def set_frame(t, i, q):
             if q.push[j] != 0.0:
                 t.kick[m, i] += q.push[j] * q.to_frame[m, 2 * j]
                 t.push[m, i] += q.push[j] * q.to_frame[m, 2 * j + 1]
-        if len(t.both) > 1 and m % 2 == 1 and q.from_frame[0, m] != 0.0:
-            t.both[1] = 1
+        if m % 2 == 1 and q.from_frame[0, m] != 0.0:
+            t.both = True
 
 
 @exported
@@ -191,7 +191,7 @@ def saltate(t, who, steepness, R):
     -R dx1, dv1 -> steepness dx1 - R dv1, dv2 -> dv2 - kappa (1 + R) dx1. det S = R^2.
     """
     apply_flight(t, who)
-    if len(t.both) > 1 and t.both[1]:
+    if t.both:
         saltate_by_both(t, who, steepness, R)
     else:
         for j in range(len(t.growth)):

@@ -122,8 +122,7 @@ def aim(t, i, q, nodes, k, s):
     """Set what `fly` has to do to bring the collected flight of orbit i to offset s of cell k of this period."""
     cells, u = k - t.cell[i], s - t.offset[i]
     if u < 0.0:
-        cells -= 1
-        u += q.width
+        cells, u = (cells - 1, u + q.width) if cells > 0 else (0, 0.0)  # 0: it is rounding
     t.cell[i], t.offset[i] = k, s
     if cells > q.cells or t.flown[i] + cells > most_cells(t, i, q) or q.stiff:
         aim_far(t, i, q, nodes, cells, u)

@@ -33,9 +33,9 @@ def finer_at(o, k):
 
 
 @jit
-def begin_finely(o, k):
-    """The state at node k: nothing beside X where the tables give it."""
-    if k != o.base:
+def begin_finely(law, o, k):
+    """The state at node k: nothing beside X where the tables give it, or where all stops are rigid."""
+    if law is None or k != o.base:
         round_off(o)
 
 
@@ -43,7 +43,7 @@ def begin_finely(o, k):
 def keep_finer(law, o, q):
     """At the section, which is node `cells` and then node 0."""
     if law is not None:
-        begin_finely(o, q.cells)
+        begin_finely(law, o, q.cells)
 
 
 @inline
