@@ -23,7 +23,7 @@ def first_candidate(f, o):
     """The first cell from `o.cell` on in which contact cannot be excluded; `cells` if there is none.
 
     The orbit is in free flight from node `origin`. The control points of all cells
-    (tables/control_points.py) are looked at, `CHUNK` at a time; an end of a cell may lie outside though all control
+    (tables/exclusion.py) are looked at, `CHUNK` at a time; an end of a cell may lie outside though all control
     points before it are inside (`candidate_state`). What leaves the range of single precision is not inside.
     """
     cells, bound, y, states = o.cells, o.remainder, o.y, len(o.remainder) - 1

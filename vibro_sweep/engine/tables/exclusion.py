@@ -1,4 +1,10 @@
-"""Control points of the gap over the cells, for any number of masses; what they are for stands in control_points.py."""
+"""Control points of the gap over the cells, by which a scan excludes cells without contact.
+
+The cubic through x1 and v1 at both ends of a cell of width h has the Bernstein coefficients x_k, x_k + h v_k/3,
+x_{k+1} - h v_{k+1}/3, x_{k+1}. Its error is at most bound t^2 (1 - t)^2 h^4/24, with a bound on the fourth derivative:
+a quartic with the one coefficient bound h^4/144, the middle one. So x1 stays below b where both inner control points do
+by that much, and both ends do. An end is the mean of the inner points beside it.
+"""
 
 from vibro_sweep.engine.simd.jit import inline, jit
 from vibro_sweep.engine.simd.lanes import LANES, SINGLES, added, number, select

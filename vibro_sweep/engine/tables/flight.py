@@ -98,8 +98,8 @@ def node_of(masses: int, constant: bool = False) -> np.dtype:
     """The record of one node of the grid."""
     states, width, inputs = 2 * masses, width_of(masses, constant), inputs_of(masses, constant)
     fields = [
-        ("z", float, (width,)),  # r, a motion under the force (forced.py);
-        # then sin and cos of omega t + tau, and perhaps 1
+        # r, a motion under the force (forced.py); then sin and cos of omega t + tau, and perhaps 1
+        ("z", float, (width,)),
         # flight from node 0: row j is X here of the unit state j there, the others that of the force's sin and cos
         ("E", float, (inputs + inputs % 2, width)),  # there, and of the constant force, from rest; padded
         ("turn", float, 2),  # sin and cos of omega t
