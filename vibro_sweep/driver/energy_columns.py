@@ -33,8 +33,7 @@ def energies_of(block: Block, steps: np.ndarray, kind: Kind, results: np.ndarray
         "peaks": np.zeros((len(systems), states)),
     }
     sums = np.zeros(len(systems), sums_of(kind.masses))
-    sums["back"] = systems["back"] if "back" in systems.dtype.names else np.eye(kind.masses)
-    sums["origin"] = systems["origin"] if "origin" in systems.dtype.names else 0.0
+    sums["back"], sums["origin"] = systems["back"], systems["origin"]
     # contiguous, in whatever order the points come: for each layout the kernel would be compiled anew
     masses = np.ascontiguousarray(_contact_masses(block, shape).reshape(-1))
     run_energy(
@@ -62,10 +61,9 @@ def _contact_masses(block: Block, shape: tuple[int, int]) -> np.ndarray:
 def at_contact(table: np.ndarray, ends: np.ndarray, resting: np.ndarray) -> np.ndarray:
     """States (..., 2 N) of the masses in contact coordinates, none behind a rigid stop, and at one where they rest."""
     ends = np.array(ends)
-    if "P" in table.dtype.names:
-        ends[..., 0::2] -= table["origin"]
-        pairs = ends.reshape(*ends.shape[:-1], -1, 2)
-        ends = np.einsum("...ij,...jk->...ik", table["P"], pairs).reshape(ends.shape)
+    ends[..., 0::2] -= table["origin"]
+    pairs = ends.reshape(*ends.shape[:-1], -1, 2)
+    ends = np.einsum("...ij,...jk->...ik", table["P"], pairs).reshape(ends.shape)
     low, high = table["stops"][..., 0], table["stops"][..., 1]
     if "contact_stiffness" in table.dtype.names:
         low, high = (

@@ -53,8 +53,6 @@ def _of_the_masses(block: Block, points: np.ndarray, kept) -> tuple[np.ndarray, 
     Of an impact: time, side, velocity of the gap before and after; then the state before, without x1 and v1 where these
     are the gap and its velocity.
     """
-    if "back" not in points.dtype.names:
-        return kept.samples, kept.sections, kept.impacts
     back = points["back"]  # (p, N, N)
 
     def turned(values):  # (p, s, n, 2 N)
