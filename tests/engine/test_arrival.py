@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import vibro_sweep as vs
-from vibro_sweep.engine import arrival, two_modes
+from vibro_sweep.engine.observed import arrival, two_modes
 from vibro_sweep.engine.simd.jit import exported
 
 NUMBERS = 4

@@ -167,11 +167,11 @@ SWEEP = "vs.sweep(system, {'b': [6.6, 6.7]}, transient=10, record=10)"
 SIMULATE = "vs.simulate(system, (0, 0, 0, 0), periods=10)"
 BOTH = """
 import vibro_sweep as vs
-from vibro_sweep.engine import points
+from vibro_sweep.engine import orbit_block
 
 system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=6.6)
 {}
-print(points.run_points.compiled)
+print(orbit_block.run_points.compiled)
 """
 
 

@@ -8,7 +8,7 @@ from support import slow_cases
 from support.frames import frame_of_one
 
 import vibro_sweep as vs
-from vibro_sweep.engine.coordinates import frame
+from vibro_sweep.engine.points import frame
 
 CASES = pytest.mark.parametrize(
     ("k", "c", "stop_at"),

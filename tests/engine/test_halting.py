@@ -16,10 +16,10 @@ from support.oscillators import PAPER
 
 import vibro_sweep as vs
 from vibro_sweep.analysis.single import orbit
-from vibro_sweep.engine import halting, points, simd
-from vibro_sweep.engine.any_points import grazing_points
+from vibro_sweep.engine import halting, orbit_block, simd
 from vibro_sweep.engine.motion.ensemble import Mapping
 from vibro_sweep.engine.one_system import Engine, plan_of
+from vibro_sweep.engine.points.any_points import grazing_points
 from vibro_sweep.engine.records import new_results, starts_at
 from vibro_sweep.engine.simd import jit
 from vibro_sweep.tables import outcomes as status
@@ -72,12 +72,12 @@ def halted(plan, mapping=None):
         if plan.order:
             engine.point["graze"] = grazing_points(CHAOS.linear, None)
         nothing, starts = np.empty((1, 8, 0)), starts_at(np.tile(STATE, (2, 8, 1)))
-        workspace = points.new_workspace(plan, engine.cells, 0, engine.kind)
+        workspace = orbit_block.new_workspace(plan, engine.cells, 0, engine.kind)
         steps = np.ascontiguousarray(np.broadcast_to(engine.point, (1, 8)))
         kept = nothing[..., None], nothing, nothing[..., None]
         for periods in (1, AGES):  # compiled before that takes long
             results, begun = new_results((1, 8), 2), plan._replace(transient=periods)
-            points.run_points(steps, starts, results, *kept, workspace, begun, mapping)
+            orbit_block.run_points(steps, starts, results, *kept, workspace, begun, mapping)
             threading.Timer(0.3, halt.__setitem__, (0, 1)).start()
         return results
     finally:

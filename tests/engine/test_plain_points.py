@@ -5,8 +5,8 @@ import pytest
 from support import slow_cases
 
 import vibro_sweep as vs
-from vibro_sweep.engine import any_points
-from vibro_sweep.engine.coordinates.contact import flight_matrix
+from vibro_sweep.engine.points import any_points
+from vibro_sweep.engine.points.contact import flight_matrix
 from vibro_sweep.oscillator.linear import stacked
 
 BITS_LOST = 2.0**-40  # what a detuning of 1e-3 of the frequency of the force, the least one drawn, may take of 2^-53

@@ -7,7 +7,7 @@ from support.drawn_oscillators import positive
 
 import vibro_sweep as vs
 from vibro_sweep.analysis.single.tables import table_of
-from vibro_sweep.engine.any_points import kind_of
+from vibro_sweep.engine.points.any_points import kind_of
 from vibro_sweep.oscillator.grid import linears
 
 SWEPT = {

@@ -159,7 +159,7 @@ def test_a_parameter_is_a_row_and_a_formula(tmp_path):
 
 def test_an_observable_is_a_row_and_a_line(tmp_path):
     """Its row stands in the architecture page."""
-    table, kernel = "tables/observables.py", "engine/observe.py"
+    table, kernel = "tables/observables.py", "engine/observed/observe.py"
     row, line = '    _impacts("sticking_time",', "    result.sticking_time = o.rest_time\n"
     new = '    _impacts("chatters", "chatter sequences", "chatter sequences that end in sticking", dtype="i8"),\n'
     edits = [(table, row, new + row), (kernel, line, line + "    result.chatters = o.chatters\n")]

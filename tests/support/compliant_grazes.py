@@ -13,7 +13,7 @@ from support.searching import Report, new_report
 from vibro_sweep.engine.compliant.law import LOGGED
 from vibro_sweep.engine.motion.orbits import new_records
 from vibro_sweep.engine.one_system import Engine
-from vibro_sweep.engine.points import MOTION
+from vibro_sweep.engine.orbit_block import MOTION
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.tables import outcomes as status
 

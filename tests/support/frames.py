@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from vibro_sweep.engine.coordinates.contact import contact_coordinates, natural_coordinates
-from vibro_sweep.engine.coordinates.frame import Frame, frame_of
+from vibro_sweep.engine.points.contact import contact_coordinates, natural_coordinates
+from vibro_sweep.engine.points.frame import Frame, frame_of
 from vibro_sweep.oscillator.linear import stacked
 
 

@@ -11,7 +11,7 @@ from reference.certified import POSITIVE, REAL, of_masses
 from support.decades import DECADES, EPS
 from support.drawn_oscillators import drawn
 from support.searching import Report, new_report
-from vibro_sweep.engine import points
+from vibro_sweep.engine import orbit_block
 from vibro_sweep.engine.motion.orbits import new_records
 from vibro_sweep.engine.one_system import Engine
 from vibro_sweep.engine.simd.lanes import LANES
@@ -64,7 +64,7 @@ def carry_eight(engine, states):
         engine.put(state, lane=lane)
     eight["periods"] = 1
     records = new_records(LANES, impacts=MOST, masses=engine.kind.masses)
-    engine._run(points.MOTION, 1, records=records)
+    engine._run(orbit_block.MOTION, 1, records=records)
     return eight[: len(states)], records
 
 

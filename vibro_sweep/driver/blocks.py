@@ -8,7 +8,7 @@ import numpy as np
 
 from vibro_sweep import __version__
 from vibro_sweep.driver.code_hash import code_hash
-from vibro_sweep.engine import points
+from vibro_sweep.engine import orbit_block
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.variational.spectrum import BATCHES
 from vibro_sweep.oscillator.grid import grid
@@ -30,7 +30,7 @@ class Block(NamedTuple):
 
     box: tuple[slice, ...]  # over the sweep's dimensions; of some of the starts, or of two directions, over `start` too
     shape: tuple[int, ...]  # of the whole sweep
-    plan: points.Plan
+    plan: orbit_block.Plan
     system: Oscillator
     axes: dict[str, np.ndarray]  # values of the swept numbers in the box, those of the start among them
     starts: np.ndarray | tuple[int, int, tuple]  # (s, 4) for all points; or (count, seed, box), drawn at each
@@ -79,14 +79,14 @@ def version() -> str:
     return f"vibro_sweep {__version__}, code {code_hash()}"
 
 
-def plan_of(scene: Scene) -> points.Plan:
+def plan_of(scene: Scene) -> orbit_block.Plan:
     """The plan of a scene, for the kernels."""
     side = {"right": 1.0, "left": -1.0}[scene.section.stop]
     lyapunov = not WITH_TANGENTS.isdisjoint(scene.observe)
-    return points.Plan(
+    return orbit_block.Plan(
         transient=scene.transient,
         record=scene.record,
-        warm_up=min(scene.transient, points.WARM_UP) if lyapunov else 0,
+        warm_up=min(scene.transient, orbit_block.WARM_UP) if lyapunov else 0,
         settle=scene.settle or 0,
         states=scene.settle is not None or not WITH_STATES.isdisjoint(scene.observe),
         lyapunov=lyapunov,

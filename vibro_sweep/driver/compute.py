@@ -13,9 +13,9 @@ from vibro_sweep.driver.blocks import Block, version
 from vibro_sweep.driver.drawn_starts import starts_of
 from vibro_sweep.driver.energy_columns import energies_of
 from vibro_sweep.driver.trajectories import trajectories_of
-from vibro_sweep.engine import points
-from vibro_sweep.engine.any_points import grazing_points
+from vibro_sweep.engine import orbit_block
 from vibro_sweep.engine.motion.ensemble import Mapping
+from vibro_sweep.engine.points.any_points import grazing_points
 from vibro_sweep.engine.records import Kind, new_results, starts_after, starts_at
 from vibro_sweep.engine.simd.kernel_cache import announce_count
 from vibro_sweep.engine.simd.lanes import LANES
@@ -98,7 +98,7 @@ def _compute(block: Block) -> dict[str, np.ndarray]:
     workspace = _workspace(block, kind, int(table["cells"].max()), min(steps.shape[1], LANES))
     mapping = Mapping(plan.order) if plan.order else None
     begins = np.stack([first, anew])
-    points.run_points(
+    orbit_block.run_points(
         steps, begins, arrays["results"], arrays["sections"], arrays["phases"], arrays["running"],
         _without_samples(workspace), plan, mapping,
     )  # fmt: skip
@@ -140,17 +140,17 @@ def _drop_without_exponents(arrays: dict[str, np.ndarray]) -> None:
             arrays[name][lost] = np.nan
 
 
-def _workspace(block: Block, kind: Kind, cells: int, orbits: int) -> points.Workspace:
+def _workspace(block: Block, kind: Kind, cells: int, orbits: int) -> orbit_block.Workspace:
     """The workspace of the block before, if it fits."""
     key = (block.plan, block.samples, kind)
     if getattr(_local, "key", None) != key or _local.cells < cells or _local.orbits < orbits:
         _local.key = _local.workspace = None  # so that there are never two
-        _local.workspace = points.new_workspace(block.plan, cells, block.samples, kind, orbits)
+        _local.workspace = orbit_block.new_workspace(block.plan, cells, block.samples, kind, orbits)
         _local.key, _local.cells, _local.orbits = key, cells, orbits
     return _local.workspace
 
 
-def _without_samples(workspace: points.Workspace) -> points.Workspace:
+def _without_samples(workspace: orbit_block.Workspace) -> orbit_block.Workspace:
     """The same workspace for motion that is not sampled: the times of a trajectory before it would be sampled again."""
     ensemble = workspace.ensemble
     records = ensemble.records._replace(times=ensemble.records.times[:0], samples=ensemble.records.samples[:0])

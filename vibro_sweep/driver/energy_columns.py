@@ -3,7 +3,7 @@
 import numpy as np
 
 from vibro_sweep.driver.blocks import Block
-from vibro_sweep.engine import points
+from vibro_sweep.engine import orbit_block
 from vibro_sweep.engine.records import Kind
 from vibro_sweep.oscillator.grid import linears
 from vibro_sweep.oscillator.stacks import dot, solved
@@ -26,7 +26,7 @@ def energies_of(block: Block, steps: np.ndarray, kind: Kind, results: np.ndarray
     outcome = np.where(status.is_valid(results["status"]), status.NOT_COMPUTED, results["status"]).reshape(-1)
     plan = block.plan._replace(states=False, lyapunov=False, impacts=False, attractors=False, section_side=0.0)
     plan = plan._replace(warm_up=0, parts=0, periods=0, record=1, settle=0)
-    workspace = points.new_workspace(plan, int(steps["cells"].max()), 0, kind)
+    workspace = orbit_block.new_workspace(plan, int(steps["cells"].max()), 0, kind)
     wanted = {
         "loss": np.zeros(len(systems)),
         "squares": np.zeros((len(systems), states)),

@@ -4,7 +4,7 @@ import numpy as np
 
 from vibro_sweep.driver.blocks import Block
 from vibro_sweep.driver.energy_columns import at_contact
-from vibro_sweep.engine.points import Workspace
+from vibro_sweep.engine.orbit_block import Workspace
 from vibro_sweep.tables.coordinates import state
 from vibro_sweep.tables.observables import of_an_impact
 

@@ -8,7 +8,7 @@ from vibro_sweep.engine.compliant.law import clear_contacts
 from vibro_sweep.engine.motion.ensemble import carry
 from vibro_sweep.engine.motion.orbits import Records, set_state
 from vibro_sweep.engine.motion.together import Ensemble, Readings
-from vibro_sweep.engine.points import prepare
+from vibro_sweep.engine.orbit_block import prepare
 from vibro_sweep.engine.simd.jit import exported, inline
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.trajectory import hold

@@ -6,11 +6,11 @@ import numpy as np
 
 from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.checks.refusals import ParameterError
-from vibro_sweep.engine import points
-from vibro_sweep.engine.any_points import any_points, kind_of
+from vibro_sweep.engine import orbit_block
 from vibro_sweep.engine.compliant.law import LOGGED
 from vibro_sweep.engine.motion import orbits
 from vibro_sweep.engine.point_tables import ON_STOP
+from vibro_sweep.engine.points.any_points import any_points, kind_of
 from vibro_sweep.engine.records import Kind, new_results, starts_at
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.tables import cells
@@ -42,12 +42,12 @@ CONTACT = np.dtype(
 )  # fmt: skip
 
 
-def plan_of(transient: int = 0, record: int = 0, lyapunov: bool = False) -> points.Plan:
+def plan_of(transient: int = 0, record: int = 0, lyapunov: bool = False) -> orbit_block.Plan:
     """The plan of what the kernels compute."""
-    return points.Plan(
+    return orbit_block.Plan(
         transient=transient,
         record=record,
-        warm_up=min(transient, points.WARM_UP) if lyapunov else 0,
+        warm_up=min(transient, orbit_block.WARM_UP) if lyapunov else 0,
         settle=0,
         states=lyapunov,
         lyapunov=lyapunov,
@@ -93,8 +93,8 @@ class Engine:
             raise ParameterError("omega", system.omega, allowed)
         self.period = system.period
         self.width = self.period * rate / self.cells
-        self._workspace = points.new_workspace(plan_of(), self.cells, 0, self.kind)
-        self._run(points.TABLES, LANES)
+        self._workspace = orbit_block.new_workspace(plan_of(), self.cells, 0, self.kind)
+        self._run(orbit_block.TABLES, LANES)
         self.stops = orbits.Stops(*self.point["stops"][0].tolist())
         self.ensemble = self._workspace.ensemble
         self.ensemble.orbits["status"][1:] = status.NOT_COMPUTED
@@ -109,7 +109,7 @@ class Engine:
         """One step of `run_points` for so many orbits. section: (orbits, periods, 2 N), if states are kept there."""
         nothing = np.empty((1, count, 0, self.states))
         workspace = self._workspace._replace(section=nothing[0] if section is None else section)
-        points.run_points(
+        orbit_block.run_points(
             self.point.repeat(count).reshape(1, count), starts_at(np.zeros((2, count, self.states))),
             new_results((1, count), self.kind.masses), nothing, np.empty((1, count, 0)), nothing,
             workspace._replace(ensemble=workspace.ensemble._replace(**kept)),
@@ -201,7 +201,7 @@ class Engine:
         self.ensemble.orbits["status"][1:] = status.NOT_COMPUTED
         law = self.ensemble.law
         kept = {} if law is None or contacts is None else {"law": law._replace(log=contacts)}
-        self._run(points.MOTION, 1, section[None], records=records, **kept)
+        self._run(orbit_block.MOTION, 1, section[None], records=records, **kept)
         return int(self.orbit["status"][0])
 
     def locate(self, times) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

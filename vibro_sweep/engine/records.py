@@ -55,16 +55,16 @@ def point_of(kind: Kind) -> np.dtype:
             ("back", float, (n, n)),
             ("origin", float, (n,)),  # x0
             ("graze", float, (2 * n,)),  # the point at which the discontinuity mapping is expanded
-            ("steady", float, (2 * n,)),  # of coordinates/confinement.py, as far as
+            ("steady", float, (2 * n,)),  # of points/confinement.py, as far as
             ("middle", float),
             ("swing", float),
             ("confining", float, (2 * n, 2 * n)),  # here
-            ("valid", np.bool_),  # of coordinates/exponentials.py, for a stiff system:
+            ("valid", np.bool_),  # of points/exponentials.py, for a stiff system:
             ("root", float, (2 * n + 3, 2)),  # real and imaginary parts
             ("part", float, (2 * n + 1, 2 * n + 3, 2)),
             ("begin", float, (2 * n,)),
             ("rounding", float),  # how far rounding may have moved the real part of a root
-            ("frame_eta", float, (n,)),  # of tangent vectors (coordinates/frame.py)
+            ("frame_eta", float, (n,)),  # of tangent vectors (points/frame.py)
             ("frame_square", float, (n,)),
             ("frame_scale", float, (n,)),
             ("to_frame", float, (2 * n, 2 * n)),

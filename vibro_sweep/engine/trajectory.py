@@ -12,7 +12,7 @@ from vibro_sweep.engine.compliant.law import lane_of, relax_from
 from vibro_sweep.engine.motion.ensemble import carry
 from vibro_sweep.engine.motion.orbits import Records, set_state
 from vibro_sweep.engine.motion.together import Ensemble, Readings
-from vibro_sweep.engine.points import prepare
+from vibro_sweep.engine.orbit_block import prepare
 from vibro_sweep.engine.simd.jit import exported, inline, jit
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.tables import outcomes as status

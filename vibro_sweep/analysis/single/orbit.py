@@ -17,7 +17,7 @@ from vibro_sweep.checks.arguments import LATEST, checked_count, checked_times, n
 from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.checks.real import number_of
 from vibro_sweep.checks.refusals import not_allowed
-from vibro_sweep.engine import points
+from vibro_sweep.engine import orbit_block
 from vibro_sweep.engine.compliant.law import LOGGED
 from vibro_sweep.engine.halting import interruptible
 from vibro_sweep.engine.motion import orbits
@@ -334,11 +334,11 @@ def lyapunov(
     plan = plan_of(transient, record, lyapunov=True)
     results, nothing = new_results((1, 1), engine.kind.masses), np.empty((1, 1, 0))
     starts = starts_at(np.tile(with_velocities(state, system.masses, 1 / engine.rate), (2, 1, 1)))
-    workspace = points.new_workspace(plan, engine.cells, 0, engine.kind, 1)
+    workspace = orbit_block.new_workspace(plan, engine.cells, 0, engine.kind, 1)
     steps = engine.point.reshape(1, 1)
     kept = nothing[..., None], nothing, nothing[..., None]
     interruptible(
-        points.run_points, steps, starts, results, *kept, workspace, plan, None,
+        orbit_block.run_points, steps, starts, results, *kept, workspace, plan, None,
         halt=workspace.ensemble.halt, cells=engine.steps * (transient + record),
     )  # fmt: skip
     found = (results[0, 0][name] * engine.rate for name in ("lyapunov", "lyapunov_error", "lyapunov_residual"))

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from vibro_sweep.engine.any_points import any_points, kind_of
+from vibro_sweep.engine.points.any_points import any_points, kind_of
 from vibro_sweep.engine.records import Kind
 from vibro_sweep.oscillator.grid import linears
 from vibro_sweep.oscillator.oscillator import Oscillator

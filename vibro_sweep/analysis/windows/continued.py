@@ -6,7 +6,7 @@ import numpy as np
 
 from vibro_sweep.analysis.single.tables import table_of
 from vibro_sweep.analysis.windows.rows import REASON_CODES, Row, first_reason
-from vibro_sweep.engine import points
+from vibro_sweep.engine import orbit_block
 from vibro_sweep.engine.halting import interruptible
 from vibro_sweep.engine.impulses.free_modes import has_free_gap, turns
 from vibro_sweep.engine.one_system import plan_of
@@ -56,10 +56,10 @@ def _computed(row: Row, i: np.ndarray, begin: np.ndarray, transient: int) -> Con
     plan = plan_of(transient + WARM_UP, MORE, lyapunov=True)._replace(impacts=True)
     results, nothing = new_results((1, n), kind.masses), np.empty((1, n, 0))
     starts = starts_at(np.stack([begin, begin]))
-    workspace = points.new_workspace(plan, int(table["cells"].max()), 0, kind, min(n, LANES))
+    workspace = orbit_block.new_workspace(plan, int(table["cells"].max()), 0, kind, min(n, LANES))
     unused = np.empty((1, n, 0, states))
     interruptible(
-        points.run_points, table.reshape(1, n), starts, results, unused, nothing, unused, workspace, plan, None,
+        orbit_block.run_points, table.reshape(1, n), starts, results, unused, nothing, unused, workspace, plan, None,
         halt=workspace.ensemble.halt, cells=int(table["cells"].sum()) * (plan.transient + plan.record),
     )  # fmt: skip
     found = results[0]

@@ -1,6 +1,6 @@
 """The oscillator's free flight as tables, in contact coordinates, for the kernels of flights.py.
 
-State zeta = (q, u, cos(omega t + tau), sin(omega t + tau), 1): q are contact coordinates (coordinates/contact.py), of
+State zeta = (q, u, cos(omega t + tau), sin(omega t + tau), 1): q are contact coordinates (points/contact.py), of
 which the first is the gap, and u1 = q1', uj = qj' - p_j q1': an impulse changes u_1 and nothing else.
 
     q' = W u,    W u = u + (0, p_2, p_3, ..) u_1,    zeta' = B zeta
@@ -11,7 +11,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.engine.coordinates.contact import coordinates, push_of
 from vibro_sweep.engine.impulses.extended import extended, identity
 from vibro_sweep.engine.impulses.free_modes import (
     MOST_CELLS,
@@ -22,6 +21,7 @@ from vibro_sweep.engine.impulses.free_modes import (
     has_free_gap,
 )
 from vibro_sweep.engine.impulses.taylor_orders import ORDER, exponential, power, taylor_rows
+from vibro_sweep.engine.points.contact import coordinates, push_of
 from vibro_sweep.oscillator.linear import MATRICES, MOTION, STEP, Linear, amplitudes, forcing_period, memoised
 
 DOUBLINGS = 18

@@ -176,7 +176,7 @@ def strike(q, R, side, w, late, X, c):
 def set_impulse(q, u, c):
     """e^{A u} e_v: the free motion at time u from a unit impulse on the gap. c (N, 3): x, v and a of each mass.
 
-    In the plane j of coordinates/frame.py, with the vectors e1 = (A e2 + eta e2)/g and e2, it begins with p e1 + w e2.
+    In the plane j of points/frame.py, with the vectors e1 = (A e2 + eta e2)/g and e2, it begins with p e1 + w e2.
     """
     for m in range(len(c)):
         c[m, 0], c[m, 1], c[m, 2] = 0.0, 0.0, 0.0

@@ -1,4 +1,4 @@
-"""The tables of a point, in contact coordinates (coordinates/contact.py)."""
+"""The tables of a point, in contact coordinates (points/contact.py)."""
 
 from typing import NamedTuple
 

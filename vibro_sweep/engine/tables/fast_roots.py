@@ -2,7 +2,7 @@
 
 Where a rate is so fast that series would need more than `cells.MOST_CELLS` cells to a period, the system is called
 stiff: its cells are those of a coarser grid, and a series takes a small step within its cell. The gap is a sum of
-exponentials (coordinates/exponentials.py). One whose root the cells do not resolve stays below its size at the
+exponentials (points/exponentials.py). One whose root the cells do not resolve stays below its size at the
 beginning, since no root grows; the slow ones are followed by cubics, whose error their fourth derivatives bound. The
 motion r begins so that the force excites no fast root. Where eigenvectors all but coincide (a free mode, critical
 damping) the sum has lost digits: it is compared at all nodes with the flights themselves, and the bounds are raised by

@@ -64,7 +64,7 @@ def oscillator_of(masses: int, constant: bool = False) -> np.dtype:
             "push",
             float,
             (masses,),
-        ),  # what a unit impulse on M1 does at once to v1 (1), v2, .. (coordinates/contact.py)
+        ),  # what a unit impulse on M1 does at once to v1 (1), v2, .. (points/contact.py)
         ("drag", float),  # and to the acceleration of M1
         ("graze", float, (states,)),  # the point at which the discontinuity mapping is expanded
         ("remainder", float, (states + 1,)),  # bound on |x1 - cubic| in any cell, for unit X - r and for r

@@ -10,7 +10,7 @@ def rest(t, i, kappa, p):
     """Z when M1 comes to rest on a stop: dx1 = dv1 = 0, and two dimensions are lost for good.
 
     The others receive through dampers what moves M1 to the stop at once: dv2 -> dv2 - kappa dx1, with kappa = 2
-    zeta/mu_m. Impulses on M1 move them by p at once (coordinates/contact.py).
+    zeta/mu_m. Impulses on M1 move them by p at once (points/contact.py).
     """
     apply_flight(t, only(i))
     t.lost[i] = 2.0

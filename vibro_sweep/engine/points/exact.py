@@ -9,7 +9,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from vibro_sweep.engine.coordinates.contact import ContactCoordinates, least_restrained
+from vibro_sweep.engine.points.contact import ContactCoordinates, least_restrained
 from vibro_sweep.oscillator.linear import Linear
 
 

@@ -5,8 +5,8 @@ Of those that differ in their stops alone one is worked out.
 
 import numpy as np
 
-from vibro_sweep.engine.coordinates.confinement import confinement_of
-from vibro_sweep.engine.coordinates.contact import (
+from vibro_sweep.engine.points.confinement import confinement_of
+from vibro_sweep.engine.points.contact import (
     ContactCoordinates,
     by_mass,
     contact_coordinates,
@@ -18,10 +18,10 @@ from vibro_sweep.engine.coordinates.contact import (
     natural_coordinates,
     origin_of,
 )
-from vibro_sweep.engine.coordinates.exact import exact_motion
-from vibro_sweep.engine.coordinates.exponentials import gap_exponentials
-from vibro_sweep.engine.coordinates.frame import frame_of
-from vibro_sweep.engine.coordinates.plain_points import machine_of, modes_of, set_plain_points
+from vibro_sweep.engine.points.exact import exact_motion
+from vibro_sweep.engine.points.exponentials import gap_exponentials
+from vibro_sweep.engine.points.frame import frame_of
+from vibro_sweep.engine.points.plain_points import machine_of, modes_of, set_plain_points
 from vibro_sweep.engine.records import Kind, point_of
 from vibro_sweep.engine.tables import cells
 from vibro_sweep.engine.tables.flight import WIDTH

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.engine.coordinates.contact import ContactCoordinates, flight_matrix
+from vibro_sweep.engine.points.contact import ContactCoordinates, flight_matrix
 
 
 class Exponentials(NamedTuple):

@@ -14,10 +14,10 @@ import math
 
 import numpy as np
 
-from vibro_sweep.engine.coordinates.frame import CLASSICAL, LEAST_SCALE, SLOWEST
-from vibro_sweep.engine.coordinates.invariant_planes import UNOBSERVABLE
-from vibro_sweep.engine.coordinates.metric import ROUNDING
-from vibro_sweep.engine.coordinates.symmetric import diagonalise, factorise, solve
+from vibro_sweep.engine.points.frame import CLASSICAL, LEAST_SCALE, SLOWEST
+from vibro_sweep.engine.points.invariant_planes import UNOBSERVABLE
+from vibro_sweep.engine.points.metric import ROUNDING
+from vibro_sweep.engine.points.symmetric import diagonalise, factorise, solve
 from vibro_sweep.engine.simd.jit import exported, jit
 
 FASTEST = 16.0  # rate over that of the force, and

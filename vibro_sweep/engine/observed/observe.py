@@ -7,11 +7,11 @@ its record shows to be under way may go through all of them again, from where th
 
 import numpy as np
 
-from vibro_sweep.engine.arrival import REPEAT, ROUNDING, is_under_way, look, set_scale
-from vibro_sweep.engine.averages import keep_averages
 from vibro_sweep.engine.compliant.law import clear_contacts
 from vibro_sweep.engine.compliant.relaxing import bring_stops, place_at
 from vibro_sweep.engine.motion.orbits import reset_counts
+from vibro_sweep.engine.observed.arrival import REPEAT, ROUNDING, is_under_way, look, set_scale
+from vibro_sweep.engine.observed.averages import keep_averages
 from vibro_sweep.engine.point_tables import to_masses
 from vibro_sweep.engine.simd.jit import inline, jit, noinline
 from vibro_sweep.engine.simd.lanes import LANES

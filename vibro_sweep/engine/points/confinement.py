@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.engine.coordinates.contact import ContactCoordinates, rest_force
+from vibro_sweep.engine.points.contact import ContactCoordinates, rest_force
 from vibro_sweep.oscillator.linear import Linear
 from vibro_sweep.oscillator.stacks import dot, modulus, only, solved, times, transposed
 from vibro_sweep.oscillator.steady import steady_amplitudes

@@ -10,13 +10,13 @@ from vibro_sweep.engine.motion import strike
 from vibro_sweep.engine.motion.ensemble import carry
 from vibro_sweep.engine.motion.orbits import Stops, new_records, set_state
 from vibro_sweep.engine.motion.together import Ensemble, Readings, flight_of, new_ensemble
-from vibro_sweep.engine.observe import PHASES, RECORD, begin_phase, close, end_phase
+from vibro_sweep.engine.observed.observe import PHASES, RECORD, begin_phase, close, end_phase
+from vibro_sweep.engine.observed.two_modes import new_fit
 from vibro_sweep.engine.point_tables import same_tables, set_graze, to_contact
 from vibro_sweep.engine.records import Kind, point_of
 from vibro_sweep.engine.simd.jit import exported, inline, jit, noinline
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.tables import build
-from vibro_sweep.engine.two_modes import new_fit
 from vibro_sweep.engine.variational import tangent
 from vibro_sweep.engine.variational.multiplier_groups import multipliers_of
 from vibro_sweep.tables import outcomes as status

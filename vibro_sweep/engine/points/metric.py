@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.engine.coordinates.contact import Natural
+from vibro_sweep.engine.points.contact import Natural
 from vibro_sweep.oscillator.stacks import columns, diagonal, transposed
 
 ROUNDING = 2.0**-48  # of the terms of a sum: what rounding may leave of it, for each mass

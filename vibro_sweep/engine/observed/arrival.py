@@ -16,13 +16,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.engine.simd.jit import jit
-from vibro_sweep.engine.two_modes import (
+from vibro_sweep.engine.observed.two_modes import (
     RESIDUAL,
     approaches_by_two_modes,
     fade_by_two_modes,
     look_for_two_modes,
 )
+from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.tables import exponents
 from vibro_sweep.tables.exponents import ARRIVED
 

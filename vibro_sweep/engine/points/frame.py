@@ -18,9 +18,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.engine.coordinates.contact import Natural, flight_matrix
-from vibro_sweep.engine.coordinates.invariant_planes import NO_PLANES, UNOBSERVABLE, Planes, invariant_planes, moved
-from vibro_sweep.engine.coordinates.metric import Matrix, in_the_metric, parts
+from vibro_sweep.engine.points.contact import Natural, flight_matrix
+from vibro_sweep.engine.points.invariant_planes import NO_PLANES, UNOBSERVABLE, Planes, invariant_planes, moved
+from vibro_sweep.engine.points.metric import Matrix, in_the_metric, parts
 from vibro_sweep.oscillator.stacks import diagonal, different, dot, finite, kron2, only, transposed
 
 CLASSICAL = 1e-13  # of the matrices: what may couple modes and be neglected

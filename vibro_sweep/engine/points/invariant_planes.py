@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.engine.coordinates.metric import ROUNDING, Matrix, forms, parts
+from vibro_sweep.engine.points.metric import ROUNDING, Matrix, forms, parts
 from vibro_sweep.oscillator.stacks import columns, dot, finite, kron2, times, transposed
 
 NO_PLANES = 1e10  # condition from which on coordinates that part what is not coupled are tried

@@ -1,0 +1,1 @@
+"""What is observed of orbits: sections, their periods, whether they have arrived, averages."""

@@ -1,0 +1,1 @@
+"""What kernels are given of each point: coordinates at a contact and of tangent vectors, and bounds of motion."""
