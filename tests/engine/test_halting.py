@@ -104,7 +104,7 @@ def test_the_same_bits_in_a_thread_of_its_own(monkeypatch):
 
 def test_errors_come_out_of_the_thread(monkeypatch):
     monkeypatch.setattr(halting, "LONG", 0)
-    monkeypatch.setattr(orbit.points, "run_points", lambda *_: 1 / 0)
+    monkeypatch.setattr(orbit.orbit_block, "run_points", lambda *_: 1 / 0)
     with pytest.raises(ZeroDivisionError):
         vs.lyapunov(CHAOS, STATE, 10, 10)
 
