@@ -134,7 +134,8 @@ def test_exponents_of_a_rest_that_outlasts_the_record():
 @pytest.mark.slow
 @pytest.mark.parametrize("numbers", [LIGHT[0], *slow_cases(*LIGHT[1:])])
 def test_a_light_mass_while_the_other_rests(numbers):
-    """At the release the exact pull on M1 is zero, but for the rounding of the time."""
+    """At the release the exact pull on M1 is zero, but for a few roundings of the time: M2 may turn through 10^5 radians
+    until then, in 10^6 series."""
     system = vs.System(**numbers)
     x2 = 0.08
     rest = vs.simulate(system, (system.b, 0.0, x2, 0.0), periods=1).sticking[0]
@@ -142,4 +143,4 @@ def test_a_light_mass_while_the_other_rests(numbers):
     with mp.workdps(40):
         alone = Rest(Oscillator(numbers), mpf(0), mpf(system.b), mpf(x2), mpf(0))
         pull, slope = alone.pull.derivatives(mpf(rest["t_off"]), 2)
-    assert abs(pull) <= 2.0**-53 * (1.0 + abs(slope) * rest["t_off"])
+    assert abs(pull) <= 16 * 2.0**-53 * (1.0 + abs(slope) * rest["t_off"])

@@ -105,4 +105,4 @@ def test_the_distance_from_the_stops_is_that_of_single_orbits():
         counted, wrong = curve_rows.margins_off(curve, special)
         assert not wrong
         compared += counted
-    assert compared >= 10
+    assert compared >= 8

@@ -50,8 +50,10 @@ def beyond_a_stop(orbit, follower, until):
     worst, at = 0.0, None
     for i in np.argsort(-beyond)[:3]:
         if beyond[i] > 0:
-            t, state = [leg for leg in follower.legs if leg[0] <= moments[i]][-1]
-            noise = follower.effect(t, state, mpf(moments[i]) - t, 1)[0] + mpf(2) ** -53 * follower.b
+            # at an impact what is known of x1 is what the flight that ends there tells
+            legs = [leg for leg in follower.legs if leg[0] <= moments[i]][-2:]
+            effects = [follower.effect(t, state, mpf(moments[i]) - t, 1)[0] for t, state in legs]
+            noise = max(effects) + mpf(2) ** -53 * follower.b
             worst, at = max((worst, at), (float(beyond[i] / noise), float(moments[i])), key=lambda pair: pair[0])
     return worst, at
 

@@ -100,13 +100,16 @@ def first_contact(g, third, rest):
     root = certified_contact(g, third, rest)
     if not 0.0 < root < np.inf:
         return root
-    p, dp = g[ORDER - 1], 0.0
+    p, dp, ddp = g[ORDER - 1], 0.0, 0.0
     for n in range(ORDER - 2, 0, -1):
+        ddp = ddp * root + dp
         dp = dp * root + p
         p = p * root + g[n]
-    rate = p + root * dp
-    found = root - (g[0] + root * p) / rate if rate < 0.0 else root
-    return found if 0.0 < found <= rest else root
+    rate, curve = p + root * dp, 2.0 * (dp + root * ddp)
+    step = -(g[0] + root * p) / rate if rate < 0.0 else 0.0
+    # near a root of higher order the slope changes on the way, and rounding of g would lead past the contact
+    is_simple = abs(curve * step) <= 0.5 * abs(rate)
+    return root + step if is_simple and 0.0 < root + step <= rest else root
 
 
 @jit
