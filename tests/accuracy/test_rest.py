@@ -134,8 +134,8 @@ def test_exponents_of_a_rest_that_outlasts_the_record():
 @pytest.mark.slow
 @pytest.mark.parametrize("numbers", [LIGHT[0], *slow_cases(*LIGHT[1:])])
 def test_a_light_mass_while_the_other_rests(numbers):
-    """At the release the exact pull on M1 is zero, but for a few roundings of the time: M2 may turn through 10^5 radians
-    until then, in 10^6 series."""
+    """At the release the exact pull on M1 is zero, but for a few roundings of the time: until then M2 may turn through
+    10^5 radians, in 10^6 series."""
     system = vs.System(**numbers)
     x2 = 0.08
     rest = vs.simulate(system, (system.b, 0.0, x2, 0.0), periods=1).sticking[0]
