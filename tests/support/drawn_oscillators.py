@@ -168,6 +168,7 @@ def drawn_paper(n):
 
     wide = rng.random() < 0.5
     mu_m, mu_k = (power(-6, 6), power(-6, 6)) if wide else (power(-1.5, 1.5), power(-1.5, 1.5))
+    mu_k = (1.0 + mu_k) - 1.0  # what is left of it in the stiffness matrix, whose 1 + mu_k is rounded
     zeta = one_of(0.0, power(-6, 1), power(-6, 1), rng.uniform(0, 0.3))
     squares, rate = fastest_rate(mu_m, mu_k, zeta)
     omega = one_of(power(-3, 3), math.sqrt(one_of(*squares)) * power(-1, 1), power(-1, 0.5))

@@ -13,7 +13,6 @@ from vibro_sweep.engine.points.contact import (
     coordinates,
     distance,
     fastest_rate,
-    is_own,
     least_restrained,
     natural_coordinates,
     origin_of,
@@ -112,7 +111,7 @@ def _points(q: Linear, rows: np.ndarray, which: np.ndarray, kind: Kind, frames: 
     machines = np.ascontiguousarray(rows[:, :-n]).view(machine_of(n))[:, 0]
     set_plain_points(machines, points, plain, np.empty(1, modes_of(n)), frames)
     points["cells"] = cells.cells_for(np.maximum(points["rate"], points["omega"]), points["omega"])
-    apart = points["turned"] & (points["rate"] > APART * points["omega"])
+    apart = points["rate"] > APART * points["omega"]
     plain &= (points["cells"] > 0) & (points["cells"] != cells.STIFF_CELLS) & ~apart & ~rows[:, -n:].any(-1)
     if not plain.all():
         others = which[~plain]
@@ -135,7 +134,7 @@ def _other_points(q: Linear, kind: Kind, frames: bool) -> np.ndarray:
     n = kind.masses
     held, damped = contact.constrained[unlike, 1:, 1:n], contact.constrained[unlike, 1:, n + 1 : 2 * n]
     points["constrained_rate"] = fastest_rate(-held, -damped)[of]
-    points["apart"] = ~is_own(q) & np.isfinite(points["rate"]) & (points["rate"] > APART * q.omega)
+    points["apart"] = np.isfinite(points["rate"]) & (points["rate"] > APART * q.omega)
     points["cells"] = cells.cells_for(np.maximum(points["rate"], q.omega), q.omega)
     for name, values in confinement_of(q, contact)._asdict().items():
         points["confining" if name == "form" else name] = values
