@@ -13,6 +13,7 @@ from vibro_sweep.engine.points.contact import (
     coordinates,
     distance,
     fastest_rate,
+    is_own,
     least_restrained,
     natural_coordinates,
     origin_of,
@@ -20,15 +21,13 @@ from vibro_sweep.engine.points.contact import (
 from vibro_sweep.engine.points.exact import exact_motion
 from vibro_sweep.engine.points.exponentials import gap_exponentials
 from vibro_sweep.engine.points.frame import frame_of
-from vibro_sweep.engine.points.plain_points import machine_of, modes_of, set_plain_points
+from vibro_sweep.engine.points.plain_points import APART, UNEVEN, machine_of, modes_of, set_plain_points
 from vibro_sweep.engine.records import Kind, point_of
 from vibro_sweep.engine.tables import cells
 from vibro_sweep.engine.tables.flight import WIDTH
 from vibro_sweep.oscillator.linear import MOTION, Linear, grazing_state, selected
-from vibro_sweep.oscillator.stacks import different, dot, unrepeated
+from vibro_sweep.oscillator.stacks import different, dot, finite, only, unrepeated
 from vibro_sweep.oscillator.steady import gap_responses, steady_amplitudes
-
-APART = 8.0  # a rate over that of the force from which on tables are computed in twice the digits
 
 
 def kind_of(q: Linear) -> Kind:
@@ -111,12 +110,18 @@ def _points(q: Linear, rows: np.ndarray, which: np.ndarray, kind: Kind, frames: 
     machines = np.ascontiguousarray(rows[:, :-n]).view(machine_of(n))[:, 0]
     set_plain_points(machines, points, plain, np.empty(1, modes_of(n)), frames)
     points["cells"] = cells.cells_for(np.maximum(points["rate"], points["omega"]), points["omega"])
-    apart = points["rate"] > APART * points["omega"]
+    apart = points["turned"] & (points["rate"] > APART * points["omega"])
     plain &= (points["cells"] > 0) & (points["cells"] != cells.STIFF_CELLS) & ~apart & ~rows[:, -n:].any(-1)
     if not plain.all():
         others = which[~plain]
         points[~plain] = _other_points(selected(q, others), kind, frames)
     return points
+
+
+def is_uneven(stiffness: np.ndarray) -> np.ndarray:
+    """Whether stiffnesses over masses (..., N, N) have soft modes beside stiff ones, (...)."""
+    sizes = np.abs(np.linalg.eigvals(only(finite(stiffness), stiffness)))
+    return sizes.min(-1) < UNEVEN * sizes.max(-1)
 
 
 @np.errstate(all="ignore")  # numbers beyond the range of the floats give infinite rates, which are a status
@@ -134,7 +139,8 @@ def _other_points(q: Linear, kind: Kind, frames: bool) -> np.ndarray:
     n = kind.masses
     held, damped = contact.constrained[unlike, 1:, 1:n], contact.constrained[unlike, 1:, n + 1 : 2 * n]
     points["constrained_rate"] = fastest_rate(-held, -damped)[of]
-    points["apart"] = np.isfinite(points["rate"]) & (points["rate"] > APART * q.omega)
+    far = np.isfinite(points["rate"]) & (points["rate"] > APART * q.omega)
+    points["apart"] = far & (~is_own(q) | is_uneven(contact.stiffness))
     points["cells"] = cells.cells_for(np.maximum(points["rate"], q.omega), q.omega)
     for name, values in confinement_of(q, contact)._asdict().items():
         points["confining" if name == "form" else name] = values

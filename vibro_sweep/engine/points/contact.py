@@ -66,6 +66,12 @@ def contact_coordinates(q: Linear) -> ContactCoordinates:
     return ContactCoordinates(P, back, origin, push, stiffness, damping, force, constrained)
 
 
+def is_own(q: Linear) -> np.ndarray:
+    """Whether these are the masses' own coordinates, of which an impulse moves the first alone, (...)."""
+    first = (q.normal == np.eye(q.normal.shape[-1])[0]).all(-1)
+    return first & is_diagonal(q.M) & ~origin_of(q).any(-1)
+
+
 def by_mass(M: np.ndarray, rows: np.ndarray) -> np.ndarray:
     """M^-1 rows."""
     simple = is_diagonal(M)

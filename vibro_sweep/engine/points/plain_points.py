@@ -20,6 +20,8 @@ from vibro_sweep.engine.points.metric import ROUNDING
 from vibro_sweep.engine.points.symmetric import diagonalise, factorise, solve
 from vibro_sweep.engine.simd.jit import exported, jit
 
+APART = 8.0  # a rate over that of the force from which on tables are computed in twice the digits, where squares of
+UNEVEN = 1e-4  # natural frequencies lie farther apart than this, or masses have other coordinates
 FASTEST = 16.0  # rate over that of the force, and
 SLOWEST_SQUARE = 1e-10  # square of a natural frequency over that of the force, beyond which an oscillator is not plain
 IN_RESONANCE = 1e-10  # of omega_j^2 + omega^2: a dynamic stiffness below which it is not
@@ -144,7 +146,8 @@ def set_rate(q, p, w):
     # what holds a mass takes stiffness and damping of all motion that is left from between those of the modes
     p.constrained_rate = max(fastest, rate_of(slowest, damping))
     p.rounding = 0.0
-    return fastest <= FASTEST * omega and slowest > SLOWEST_SQUARE * omega * omega
+    even = fastest <= APART * omega or slowest >= UNEVEN * fastest * fastest
+    return even and fastest <= FASTEST * omega and slowest > SLOWEST_SQUARE * omega * omega
 
 
 @jit
