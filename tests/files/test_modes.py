@@ -8,6 +8,8 @@ from support.contents import described
 from support.stored import SWEEP, broken_off, scene_of
 
 import vibro_sweep as vs
+from vibro_sweep.files.file_errors import StoreError
+from vibro_sweep.files.lock import locked
 
 
 def test_new_refuses_what_is_there(path):
@@ -110,3 +112,22 @@ def test_overwrite_of_a_damaged_file(path):
     path.write_bytes(b"not HDF5")
     vs.run(scene_of(SWEEP), path, mode="overwrite")
     assert "3 of 3" in described(path)
+
+
+@pytest.mark.parametrize("call", ["open", "fstat", "lstat"])
+def test_ctrl_c_while_a_file_is_locked_leaves_no_lock(tmp_path, monkeypatch, call):
+    """It comes out of whichever system call the main thread is in, and then the next run is free to begin."""
+    path, real = tmp_path / "out.h5", getattr(os, call)
+
+    def interrupted(*arguments):
+        monkeypatch.undo()
+        real(*arguments)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(os, call, interrupted)
+    with pytest.raises(KeyboardInterrupt), locked(path):
+        pytest.fail("it is not locked")
+    assert not list(tmp_path.iterdir())
+    with locked(path), pytest.raises(StoreError, match="another run"), locked(path):
+        pytest.fail("it is locked")
+    assert not list(tmp_path.iterdir())
