@@ -1,5 +1,6 @@
 """`mode` of a run where a file exists: new, resume, overwrite."""
 
+import fcntl
 import os
 
 import pytest
@@ -8,8 +9,6 @@ from support.contents import described
 from support.stored import SWEEP, broken_off, scene_of
 
 import vibro_sweep as vs
-from vibro_sweep.files.file_errors import StoreError
-from vibro_sweep.files.lock import locked
 
 
 def test_new_refuses_what_is_there(path):
@@ -114,20 +113,20 @@ def test_overwrite_of_a_damaged_file(path):
     assert "3 of 3" in described(path)
 
 
-@pytest.mark.parametrize("call", ["open", "fstat", "lstat"])
-def test_ctrl_c_while_a_file_is_locked_leaves_no_lock(tmp_path, monkeypatch, call):
+@pytest.mark.parametrize("module, call", [(os, "open"), (fcntl, "flock"), (os, "lstat")])
+def test_ctrl_c_while_a_file_is_locked_leaves_no_lock(path, monkeypatch, module, call):
     """It comes out of whichever system call the main thread is in, and then the next run is free to begin."""
-    path, real = tmp_path / "out.h5", getattr(os, call)
+    scene, real = scene_of(SWEEP), getattr(module, call)
 
-    def interrupted(*arguments):
-        monkeypatch.undo()
-        real(*arguments)
-        raise KeyboardInterrupt
+    def interrupted(what, *arguments):
+        result = real(what, *arguments)
+        if call == "flock" or str(what).endswith(".lock"):
+            monkeypatch.setattr(module, call, real)
+            raise KeyboardInterrupt
+        return result
 
-    monkeypatch.setattr(os, call, interrupted)
-    with pytest.raises(KeyboardInterrupt), locked(path):
-        pytest.fail("it is not locked")
-    assert not list(tmp_path.iterdir())
-    with locked(path), pytest.raises(StoreError, match="another run"), locked(path):
-        pytest.fail("it is locked")
-    assert not list(tmp_path.iterdir())
+    monkeypatch.setattr(module, call, interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        vs.run(scene, path)
+    assert not list(path.parent.glob("*.lock"))
+    assert vs.run(scene, path).computed == 3

@@ -65,9 +65,9 @@ def at_contact(table: np.ndarray, ends: np.ndarray, resting: np.ndarray) -> np.n
     pairs = ends.reshape(*ends.shape[:-1], -1, 2)
     ends = np.einsum("...ij,...jk->...ik", table["P"], pairs).reshape(ends.shape)
     low, high = table["stops"][..., 0], table["stops"][..., 1]
-    if "contact_stiffness" in table.dtype.names:
+    if "contact_law" in table.dtype.names:
         low, high = (
-            np.where(table["contact_stiffness"][..., n] > 0, np.inf * (2 * n - 1), wall)
+            np.where(table["contact_law"][..., n, 0] > 0, np.inf * (2 * n - 1), wall)
             for n, wall in enumerate((low, high))
         )
         resting = np.where(np.isinf(np.where(resting > 0, high, low)), 0, resting)

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from vibro_sweep.oscillator.linear import STOP_LAW
 from vibro_sweep.tables.observables import OF_AN_ORBIT, dimensions
 
 
@@ -22,12 +23,11 @@ def point_of(kind: Kind) -> np.dtype:
     """A point: an oscillator in contact coordinates q = P (x - x0)."""
     n = kind.masses
     contact = [
-        ("contact_stiffness", float, 2),  # of the left stop and the right one, over m_e; 0: it is rigid
-        ("contact_damping", float, 2),
-        ("contact_preload", float, 2),
+        # of the left stop and the right one the numbers of its law, over m_e: k, which is 0 if it is rigid, c and p
+        ("contact_law", float, (2, len(STOP_LAW))),
+        ("release", np.int64),  # of engine/compliant/laws.py
         ("contact_rate", float, 2),  # the fastest in contact
         ("contact_mass", float),  # m_e
-        ("by_force", np.bool_),
     ]
     return np.dtype(
         [

@@ -27,6 +27,7 @@ MATRICES = ("M", "K", "C", "normal", "omega")  # fields that move free modes,
 FORCED = (*MATRICES, "constant", "sine", "cosine")  # the steady motion too,
 MOTION = (*FORCED, "tau")  # and the flight from a time on
 RANKS = {"M": 2, "K": 2, "C": 2, "normal": 1, "constant": 1, "sine": 1, "cosine": 1}  # fields that are no numbers
+STOP_LAW = ("k", "c", "p")  # numbers of a compliant stop: fields with _low and _high
 LEAST = 1e-100  # stiffness of a stop that is a damper alone: no double is that small beside another of a machine
 STEP = 1e-100  # of the complex step: its square underflows, so that a derivative has no truncation error
 

@@ -16,6 +16,7 @@ import math
 import numpy as np
 from numpy.polynomial import Chebyshev, Polynomial
 
+from vibro_sweep.engine.compliant.laws import is_shared
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.tables.series import clear, derive
@@ -106,6 +107,16 @@ def set_pieces(passage, i, contact, rates, omega):
     for n in range(1 if same else 0, 2):
         if contact.compliant[n] != 0:
             fill_pieces(passage, n, i, contact, omega)
+            if not is_shared(contact, n):
+                leave_alone(passage, n, i)
+
+
+@jit
+def leave_alone(passage, n, i):
+    """The guard never falls below zero: no contact with stop n of orbit i is passed here."""
+    count = PIECES * len(passage.touch)
+    for row in range((2 * GUARD + n) * count, (2 * GUARD + n + 1) * count):
+        passage.ends[row, i] = 0.0
 
 
 @jit

@@ -1,8 +1,8 @@
 """Flight in contact: Taylor series of delta, w2, ..., of the force, and of tangent vectors; and where the contact ends.
 
 A series reaches as far as rate * time <= 1/2 (tables/flight.py), with the fastest rate in contact. The end is the first
-zero of delta, or of the force if the stop is left by force; that which delta has at the touch is divided out
-(motion/first_contact.py), so that contacts of any shortness keep their digits, and no end is passed.
+zero of a guard (laws.py); that which delta has at the touch is divided out (motion/first_contact.py), so that contacts
+of any shortness keep their digits, and no end is passed.
 """
 
 import numpy as np
@@ -11,7 +11,6 @@ from vibro_sweep.engine.compliant.law import lane_of
 from vibro_sweep.engine.motion.distance import delta_of, set_delta
 from vibro_sweep.engine.motion.energy_sums import PLACES, WEIGHTS, largest_value
 from vibro_sweep.engine.motion.first_contact import first_contact, set_gap, size_at
-from vibro_sweep.engine.motion.force_phase import copy_phase
 from vibro_sweep.engine.motion.rest import first_nonzero
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.tables.flight import ORDER, bound_third_over, evaluate
@@ -24,30 +23,28 @@ NOTHING = 1e-250  # a contact that has died away, which has no end
 
 @jit
 def enter(contact, o, stops, side):
-    """Set delta, w2, ... and the phase of the force from the orbit's."""
+    """Set delta, w2, ... from the orbit's state."""
     X, finer, y, low = o.X, o.finer, contact.y, contact.low
     y[0], low[0] = delta_of(o, stops, side), 0.0
     y[1], low[1] = side * X[1], side * finer[1]
     for j in range(2, len(y)):
         share, share_low = multiply(contact.push[j // 2], 0.0, X[j % 2], finer[j % 2])
         y[j], low[j] = add(X[j], finer[j], -share, -share_low)
-    copy_phase(o, contact)
 
 
 @jit
 def leave(contact, o, stops, side):
-    """Set the orbit's state and phase from those of the contact."""
+    """Set the orbit's state from delta, w2, ..."""
     X, finer, y, low = o.X, o.finer, contact.y, contact.low
     set_delta(o, stops, side, y[0])
     X[1], finer[1] = side * y[1], side * low[1]
     for j in range(2, len(y)):
         share, share_low = multiply(contact.push[j // 2], 0.0, X[j % 2], finer[j % 2])
         X[j], finer[j] = add(y[j], low[j], share, share_low)
-    copy_phase(contact, o)
 
 
 @jit
-def dot_slow(contact, row):
+def dot_slow(contact, o, row):
     """row . (w2, w2', ..., sin, cos, 1), which stand after delta and delta', of products and sums in twice the digits.
 
     So a of delta'' = -(k0 + k) delta - (c0 + c) delta' + a is formed. In a contact of many series delta follows a,
@@ -59,81 +56,80 @@ def dot_slow(contact, row):
         term, term_low = multiply(row[j], 0.0, contact.y[j], contact.low[j])
         a, low = add(a, low, term, term_low)
     for j in range(2):
-        term, term_low = multiply(row[states + j], 0.0, contact.phase[j], contact.phase_low[j])
+        term, term_low = multiply(row[states + j], 0.0, o.phase[j], o.phase_low[j])
         a, low = add(a, low, term, term_low)
     return a
 
 
 @jit
-def load_contact(contact, side, omega):
+def load_contact(contact, o, side, omega):
     """Taylor series from y on."""
-    G, c, y = contact.equations[lane_of(side)], contact.c, contact.y
+    G, c, y = contact.equations[lane_of(side)], o.c, contact.y
     for i in range(len(c)):
         c[i, 0], c[i, 1] = y[2 * i], y[2 * i + 1]
-    fill_taylor(G, 0, dot_slow(contact, G[0]), contact.phase[0], contact.phase[1], 1.0, omega, c)
+    fill_taylor(G, 0, dot_slow(contact, o, G[0]), o.phase[0], o.phase[1], 1.0, omega, c)
 
 
 @jit
-def load_force(contact, side):
-    """Taylor series of F/m_e = k delta + c delta' + p."""
-    n_stop, c = lane_of(side), contact.c
-    k, d = contact.stiffness[n_stop], contact.damping[n_stop]
+def load_form(contact, c, form):
+    """Taylor series of a linear form of (delta, delta', 1)."""
+    series = contact.form
     for n in range(ORDER - 1):
-        contact.force[n] = k * c[0, n] + d * ((n + 1.0) * c[0, n + 1])
-    contact.force[0] += contact.preload[n_stop]
-    contact.force[ORDER - 1] = k * c[0, ORDER - 1]
+        series[n] = form[0] * c[n] + form[1] * ((n + 1.0) * c[n + 1])
+    series[0] += form[2]
+    series[ORDER - 1] = form[0] * c[ORDER - 1]
 
 
 @jit
-def leaves_by_force(contact, side):
-    """Whether the end of contact is where the force is zero: without a damper that is where delta is."""
-    return contact.by_force and contact.damping[lane_of(side)] > 0.0
-
-
-@jit
-def first_zero(contact, c, n, length):
+def first_zero(o, c, n, length):
     """The first zero in (0, length] of a polynomial that is positive after a zero of order n at 0."""
-    set_gap(contact.gap, c, c[0], -1.0, n)
-    if size_at(contact.gap, length) < NOTHING:
+    set_gap(o.gap, c, c[0], -1.0, n)
+    if size_at(o.gap, length) < NOTHING:
         return np.inf
-    if not contact.gap[0] > 0.0:
+    if not o.gap[0] > 0.0:
         return 0.0
-    return first_contact(contact.gap, bound_third_over(contact.gap, length), length)
+    return first_contact(o.gap, bound_third_over(o.gap, length), length)
 
 
 @jit
-def end_of_contact(contact, side, length):
-    """When contact ends within the series, infinite if it does not; NaN where that cannot be decided."""
-    order = first_nonzero(contact.c[0], contact.least) if contact.entered else 0
-    contact.ends_by_force = leaves_by_force(contact, side)
-    if not contact.ends_by_force:
-        return first_zero(contact, contact.c[0], order, length)
-    load_force(contact, side)
-    d = first_zero(contact, contact.force, first_nonzero(contact.force, 0), length)
-    if contact.preload[lane_of(side)] > 0.0 and d > 0.0:
-        sooner = first_zero(contact, contact.c[0], order, min(d, length))
-        if not sooner > d:
-            contact.ends_by_force = False
-            return sooner
-    return d
+def end_of_contact(contact, o, side, length):
+    """When contact ends within the series, infinite if it does not; NaN where that cannot be decided. Of the guard that
+    ends it the place is kept."""
+    n_stop, end = lane_of(side), np.inf
+    for i in range(contact.guards[n_stop]):
+        form = contact.guard[n_stop, i]
+        load_form(contact, o.c[0], form)
+        order = 0
+        if form[1] != 0.0:
+            order = first_nonzero(contact.form, 0)
+        elif contact.entered:
+            order = first_nonzero(contact.form, contact.least)
+        d = first_zero(o, contact.form, order, min(end, length))
+        if d != d:
+            return d
+        if d < end:
+            end, contact.ended_by = d, i
+    return end
 
 
 @jit
-def go_on_in_contact(contact, u):
+def go_on_in_contact(contact, o, u):
     """y at offset u of the series."""
     y, low = contact.y, contact.low
-    for i in range(len(contact.c)):
-        x, v = change_within(contact.c[i], u)
+    for i in range(len(o.c)):
+        x, v = change_within(o.c[i], u)
         y[2 * i], low[2 * i] = add(y[2 * i], low[2 * i], x, 0.0)
         y[2 * i + 1], low[2 * i + 1] = add(y[2 * i + 1], low[2 * i + 1], v, 0.0)
 
 
 @jit
-def watch_contact(contact, side, u):
+def watch_contact(contact, o, side, u):
     """What is recorded of the contact over the time u of the series."""
-    load_force(contact, side)
-    contact.largest = max(contact.largest, largest_value(contact.c[0], u))
-    contact.strongest = max(contact.strongest, largest_value(contact.force, u))
+    n = lane_of(side)
+    load_form(contact, o.c[0], contact.force[n])
+    contact.largest = max(contact.largest, largest_value(o.c[0], u))
+    contact.strongest = max(contact.strongest, largest_value(contact.form, u))
+    contact.work += contact.damping[n] * integral_of_squared_slope(o.c[0], u)
 
 
 @jit
@@ -150,6 +146,15 @@ def integral_of_squared_slope(c, u):
         _, slope = evaluate(c, PLACES[n] * u)
         total += WEIGHTS[n] * slope * slope
     return total * u
+
+
+@jit
+def second_derivative(c, u):
+    """Of a polynomial, which has the length of a series."""
+    total = 0.0
+    for n in range(ORDER - 1, 1, -1):
+        total = total * u + n * (n - 1.0) * c[n]
+    return total
 
 
 @jit

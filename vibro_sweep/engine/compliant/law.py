@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from vibro_sweep.engine.compliant.laws import law_fields, set_law_of_stop
 from vibro_sweep.engine.compliant.passage_tables import passages_of, set_passage
 from vibro_sweep.engine.compliant.relaxing import bring_stops
 from vibro_sweep.engine.compliant.slow_manifold import slow_manifold_fields
@@ -47,7 +48,7 @@ def law_of(masses: int) -> np.dtype:
         ("stiffness", float, 2),  # k, c and p
         ("damping", float, 2),
         ("preload", float, 2),
-        ("by_force", np.bool_),  # a contact ends where the force is zero, and the stop goes on relaxing
+        *law_fields(),
         ("mass", float),  # m_e
         ("trace", float, 2),  # the rate at which volumes change without the stop's damping
         ("equations", float, (2, masses, states + 3)),  # (delta'', w2'', ..) by (delta, delta', w2, .., sin, cos, 1)
@@ -57,14 +58,13 @@ def law_of(masses: int) -> np.dtype:
         ("pressed", float),  # the side of the stop that it is with, or 0
         ("entered", np.bool_),  # whether this is its beginning, where delta is zero, as are its derivatives
         ("least", np.int64),  # below this order
-        ("ends_by_force", np.bool_),  # whether its end is where the force is zero
+        ("ended_by", np.int64),  # the guard that ended it
         ("y", float, (states,)),  # delta, delta', w2, w2', ..., and
         ("low", float, (states,)),  # what rounding leaves of them
-        ("phase", float, 2),  # sin and cos of the force, and
-        ("phase_low", float, 2),  # what rounding leaves of them
-        ("c", float, (masses, ORDER)),  # Taylor coefficients of delta, w2, ...
-        ("force", float, (ORDER,)),  # F/m_e
-        ("gap", float, (ORDER,)),
+        ("form", float, (ORDER,)),  # Taylor coefficients of a linear form of (delta, delta', 1)
+        ("steps", np.int64),  # series in this cell
+        ("ending", np.bool_),  # whether its end is near, of a slow motion (slow_contact.py)
+        ("uncarried", float),  # time that tangent vectors have not been carried over
         # of flights (distance.py)
         ("near", float, 2),  # how near to each stop, and how slow in a cell, one is that needs all digits of the gap
         ("close_until", np.int64),  # until which cell since t = 0: a period after the last release
@@ -82,6 +82,7 @@ def law_of(masses: int) -> np.dtype:
         ("after", float, (states,)),
         ("begun", np.int64),  # how they come in (tangent_in_contact.py)
         ("touched", float),  # delta' at the touch
+        ("acceleration", float),  # delta'' at the end
         ("decay", float),  # of what a vector does to a stop that relaxes, since it was left
         ("touch", float, (states, states)),  # R, and
         ("vectors", float, (states, states)),  # Q of the touch of a stop that relaxes
@@ -118,18 +119,17 @@ def new_law(kind: Kind, halt: np.ndarray, room: int = 0) -> Law | None:
 def set_law(law, i, point, q):
     """Give orbit i of the oscillator q its stops."""
     contact, masses, width = law.orbits[i], len(point.push), q.width
-    contact.by_force, contact.mass = point.by_force, point.contact_mass
+    contact.mass = point.contact_mass
     for m in range(masses):
         contact.push[m] = point.push[m]
     for n in range(2):
-        contact.compliant[n] = int(point.contact_stiffness[n] > 0.0)
-        contact.stiffness[n], contact.damping[n] = point.contact_stiffness[n], point.contact_damping[n]
-        contact.preload[n] = point.contact_preload[n]
+        set_law_of_stop(contact, n, point.contact_law[n], point.release)
+        contact.compliant[n] = int(contact.stiffness[n] > 0.0)
         step = min(width, WIDTH / point.contact_rate[n]) if contact.compliant[n] else width
         contact.step[n] = np.float32(step)
         contact.relaxed[n] = 0.0
         contact.near[n] = NEAR * (abs(point.stops[n]) + q.largest) if contact.compliant[n] else 0.0
-        contact.trace[n] = fill_equations(contact.equations[n], point, 2.0 * n - 1.0, n)
+        contact.trace[n] = fill_equations(contact.equations[n], contact.force[n], point, 2.0 * n - 1.0, n)
     contact.pressed, contact.entered, contact.watched, contact.row = 0.0, False, False, -1
     for part in range(len(contact.apart)):
         contact.apart[part] = 0
@@ -138,7 +138,7 @@ def set_law(law, i, point, q):
 
 
 @jit
-def fill_equations(G, point, side, n):
+def fill_equations(G, force, point, side, n):
     """The equations of contact with one stop. Returns the rate at which all but its damping changes volumes."""
     p, S, D, f = point.push, point.stiffness, point.damping, point.force
     masses, states, wall = len(p), 2 * len(p), point.stops[n]
@@ -164,9 +164,9 @@ def fill_equations(G, point, side, n):
     trace = 0.0
     for m in range(masses):
         trace += G[m, 2 * m + 1]
-    G[0, 0] -= point.contact_stiffness[n]
-    G[0, 1] -= point.contact_damping[n]
-    G[0, states + 2] -= point.contact_preload[n]
+    G[0, 0] -= force[0]
+    G[0, 1] -= force[1]
+    G[0, states + 2] -= force[2]
     return trace
 
 

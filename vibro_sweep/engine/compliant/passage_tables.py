@@ -3,6 +3,7 @@
 import numpy as np
 
 from vibro_sweep.engine.compliant.contact_pieces import piece_fields, set_pieces
+from vibro_sweep.engine.compliant.laws import relaxes
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.simd.memory import record
@@ -72,5 +73,5 @@ def set_passage(passage, i, contact, point, q):
         passage.compliant[n, i] = contact.compliant[n]
         passage.stiffness[n, i], passage.damping[n, i] = contact.stiffness[n], contact.damping[n]
         passage.preload[n, i], passage.trace[n, i] = contact.preload[n], contact.trace[n]
-        passage.by_force[n, i] = 1.0 if contact.by_force and contact.damping[n] > 0.0 else 0.0
+        passage.by_force[n, i] = 1.0 if relaxes(contact, n) else 0.0
     set_pieces(passage, i, contact, point.contact_rate, q.omega)

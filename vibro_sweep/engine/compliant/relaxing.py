@@ -99,22 +99,22 @@ def reach_of_relaxing(contact, n, left):
 
 
 @jit
-def distance_to_touch(contact, side, c, delta, order, left):
-    """Time of the first touch of a stop that relaxes, along a flight c of the gap; s - delta begins with a zero of this
-    order, which is divided out."""
-    n = 1 if side > 0.0 else 0
+def distance_to_touch(contact, o, side, delta, order, left):
+    """Time of the first touch of a stop that relaxes; s - delta begins with a zero of this order, which is divided
+    out."""
+    n, c, gap = 1 if side > 0.0 else 0, o.c[0], o.gap
     rate, rest = rate_of_relaxing(contact, n), contact.preload[n] / contact.stiffness[n]
     term = contact.relaxed[n] + rest
     for m in range(ORDER):
         value = contact.relaxed[n] - delta if m == 0 else term - side * c[m]
         if m >= order:
-            contact.gap[m - order] = value
+            gap[m - order] = value
         term *= -rate / (m + 1.0)
     for m in range(ORDER - order, ORDER):
-        contact.gap[m] = 0.0
-    if not contact.gap[0] > 0.0:
+        gap[m] = 0.0
+    if not gap[0] > 0.0:
         return 0.0
-    return first_contact(contact.gap, bound_third_over(contact.gap, left), left)
+    return first_contact(gap, bound_third_over(gap, left), left)
 
 
 @jit

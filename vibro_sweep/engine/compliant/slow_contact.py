@@ -33,18 +33,18 @@ def slow_step(contact, n, kind):
 
 
 @jit
-def fast_that_died(contact, n, omega):
+def fast_that_died(contact, o, n, omega):
     """What is fast in contact with stop n and rounding by now; 0: nothing."""
     for kind in (BOTH, SPEED, OTHER):
         if not is_set_apart(contact, n, kind, omega) or slow_step(contact, n, kind) < WORTHWHILE * contact.step[n]:
             continue
-        if drop_fast_motion(contact, n, kind):
+        if drop_fast_motion(contact, o, n, kind):
             return kind
     return 0
 
 
 @jit
-def drop_fast_motion(contact, n, kind):
+def drop_fast_motion(contact, o, n, kind):
     """f becomes L q if phi is rounding by now. Returns whether it is.
 
     Of delta' or delta that follows from the equation of motion, delta'' = G_00 delta + G_01 delta' + a with delta'' of
@@ -53,19 +53,19 @@ def drop_fast_motion(contact, n, kind):
     """
     part, G, y, low = part_of(n, kind), contact.equations[n], contact.y, contact.low
     L, F, states, fast = contact.L[part], contact.F[part], len(contact.y), count_of(kind)
-    put_slow(contact, n, kind)
+    put_slow(contact, o, n, kind)
     bend, value, size = 0.0, 0.0, 0.0
     for j in range(fast, states + 3):
         bend += contact.bend[part, j] * contact.term[0, j]
         value += L[fast - 1, j] * contact.term[0, j]
         size += abs(L[fast - 1, j] * contact.term[0, j])
-    a, delta, speed, place = dot_slow(contact, G[0]), y[0], value, 1
+    a, delta, speed, place = dot_slow(contact, o, G[0]), y[0], value, 1
     if kind == OTHER:
         place = other_speed(contact, n, kind)
     if kind == SPEED:
         speed = (bend - G[0, 0] * y[0] - a) / G[0, 1]
     if kind == BOTH:
-        speed = dot_slow(contact, L[0])
+        speed = dot_slow(contact, o, L[0])
         delta = (bend - G[0, 1] * speed - a) / G[0, 0]
     left = abs((y[place] - speed) + low[place])
     if kind == BOTH:
@@ -81,24 +81,24 @@ def drop_fast_motion(contact, n, kind):
 
 
 @jit
-def put_slow(contact, n, kind):
+def put_slow(contact, o, n, kind):
     """q, as the first term of its series."""
     y, term, states = contact.y, contact.term[0], len(contact.y)
     term[0], term[1] = y[1], y[0]
     for j in range(2, states):
         term[j] = y[j]
-    term[states], term[states + 1], term[states + 2] = contact.phase[0], contact.phase[1], 1.0
+    term[states], term[states + 1], term[states + 2] = o.phase[0], o.phase[1], 1.0
     exchange(term, other_speed(contact, n, kind))
 
 
 @jit
-def load_slow(contact, n, kind):
+def load_slow(contact, o, n, kind):
     """Taylor series from y on, of the slow motion."""
     S, L, c, y, fast = (
-        contact.S[part_of(n, kind)], contact.L[part_of(n, kind)], contact.c, contact.y, count_of(kind)
+        contact.S[part_of(n, kind)], contact.L[part_of(n, kind)], o.c, contact.y, count_of(kind)
     )  # fmt: skip
     size = len(S)
-    put_slow(contact, n, kind)
+    put_slow(contact, o, n, kind)
     for k in range(ORDER):
         term, after = contact.term[k % 2], contact.term[(k + 1) % 2]
         for m in range(1, len(c)):

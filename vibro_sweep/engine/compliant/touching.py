@@ -1,7 +1,7 @@
 """What happens where a mass is at a compliant stop, or inside it, and where it has left one."""
 
-from vibro_sweep.engine.compliant.contact_series import leaves_by_force
 from vibro_sweep.engine.compliant.law import lane_of
+from vibro_sweep.engine.compliant.laws import BREAKS, relaxes, value_of
 from vibro_sweep.engine.compliant.pressing import begin_contact
 from vibro_sweep.engine.compliant.relaxing import speed_of_stop
 from vibro_sweep.engine.motion.distance import delta_of
@@ -17,7 +17,10 @@ NEAR = 8.0 * 2.0**-52  # of the place of a stop, or the depth of its preload: lo
 def after_contact(contact, X, side):
     """After a contact: the side of the stop that the mass is at without speed, or of the one that it leaves, and the
     order of the zero with which it does."""
-    if contact.relaxed[lane_of(side)] > 0.0:
+    n = lane_of(side)
+    if contact.then[n, contact.ended_by] == BREAKS:
+        return 0.0, 0.0, 0
+    if contact.relaxed[n] > 0.0:
         return 0.0, side, 2
     if X[1] != 0.0:
         return 0.0, side, 1
@@ -32,7 +35,7 @@ def meet(law, f, stops, o, records, t, k, s, side, hit, released):
     speed, inside, p = side * X[1], delta_of(o, stops, side), contact.preload[n]
     relative, unrelaxed = speed - speed_of_stop(contact, n), contact.relaxed[n] > 0.0
     if not hit and inside - contact.relaxed[n] > EXPLAINED * (abs(X[0]) + abs(wall_of(stops, side))):
-        if leaves_by_force(contact, side) and contact.stiffness[n] * inside + contact.damping[n] * speed + p < 0.0:
+        if relaxes(contact, n) and value_of(contact.force[n], inside, speed) < 0.0:
             contact.relaxed[n] = contact.left[n] = inside
             contact.cell[n], contact.offset[n] = o.period * o.cells + k, s
             return -1

@@ -61,19 +61,19 @@ def copy_flight(s, o):
 
 
 @inline
-def add_contact(sums, contact, wall, side, u):
-    """Add the contact of which the series of delta, w2, ... are, over the time u."""
+def add_contact(sums, o, push, wall, side, u):
+    """Add the contact of which the orbit's series of delta, w2, ... are, over the time u."""
     if sums is not None:
-        copy_contact(sums[0], contact, wall, side)
+        copy_contact(sums[0], o, push, wall, side)
         add_piece(sums[0], u)
 
 
 @jit
-def copy_contact(s, contact, wall, side):
+def copy_contact(s, o, push, wall, side):
     for n in range(ORDER):
-        s.course[0, n] = side * contact.c[0, n] + (wall if n == 0 else 0.0)
+        s.course[0, n] = side * o.c[0, n] + (wall if n == 0 else 0.0)
         for m in range(1, len(s.course)):
-            s.course[m, n] = contact.c[m, n] + contact.push[m] * s.course[0, n]
+            s.course[m, n] = o.c[m, n] + push[m] * s.course[0, n]
 
 
 @inline

@@ -19,16 +19,9 @@ def set_phase(o, sin, cos):
 
 @jit
 def turn_phase(o, omega, u):
-    """Carry the phase of an orbit, or of its contact, on by the time u."""
+    """Carry the phase of an orbit on by the time u."""
     phase, low = o.phase, o.phase_low
     swing, half = math.sin(omega * u), math.sin(0.5 * omega * u)
     sin, cos, fall = phase[0], phase[1], -2.0 * half * half
     phase[0], low[0] = add(sin, low[0], sin * fall + cos * swing, 0.0)
     phase[1], low[1] = add(cos, low[1], cos * fall - sin * swing, 0.0)
-
-
-@jit
-def copy_phase(source, target):
-    """From an orbit to its contact, or back."""
-    for i in range(2):
-        target.phase[i], target.phase_low[i] = source.phase[i], source.phase_low[i]

@@ -1,16 +1,12 @@
 """M1 on a stop: the chatter that brings it to rest, the rest, in which the other masses move, and the release."""
 
-import math
-
 import numpy as np
 
-from vibro_sweep.engine.motion.energy_sums import add_flight
 from vibro_sweep.engine.motion.first_contact import first_contact, set_gap
-from vibro_sweep.engine.motion.orbits import add_change, restitution_of, take_samples
+from vibro_sweep.engine.motion.orbits import restitution_of, round_off
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.tables.flight import ORDER, bound_third_over, evaluate
 from vibro_sweep.engine.tables.series import fill_taylor
-from vibro_sweep.engine.tables.twofold import add
 from vibro_sweep.engine.variational import tangent_at_rest, tangent_flight
 
 CHATTER = 2.0**-53  # of a period: the error allowed in time when the rest of a chatter sequence is summed up
@@ -45,6 +41,7 @@ def begin_rest(f, o, records, t, k, s, side, w):
     """
     o.X[1] = o.fastest = 0.0
     o.resting = side
+    round_off(o)
     mark_rest(o, records, k, s, side)
     if t.wanted:
         q = f.oscillator[0]
@@ -55,9 +52,9 @@ def begin_rest(f, o, records, t, k, s, side, w):
 
 
 @jit
-def load_rest(q, o, sin, cos):
+def load_rest(q, o):
     """Series of the free acceleration of M1 in c[0], and of x2, ... in the other rows."""
-    c, a, X, states = o.c, q.force, o.X, 2 * len(o.c)
+    c, a, X, states, sin, cos = o.c, q.force, o.X, 2 * len(o.c), o.phase[0], o.phase[1]
     for n in range(1, ORDER):
         c[0, n] = 0.0
     for i in range(len(c)):
@@ -97,7 +94,7 @@ def carry_tangent(t, o, q, w):
 @jit
 def first_release(o, left, most):
     """Time at which the free acceleration, which points into the stop, changes sign: a root found like a contact; or is
-    `most`, beyond which the preload of a compliant stop does not hold it."""
+    `most`, infinite of a rigid stop, beyond which the preload of a compliant one does not hold M1."""
     side, c1 = o.resting, o.c[0]
     gap = max(side * c1[0], 0.0)
     n = 0 if gap > 0.0 else first_nonzero(c1, 1)
@@ -116,39 +113,10 @@ def first_release(o, left, most):
 
 
 @jit
-def stay_at_rest(f, o, records, t, k, s, most):
-    """M1 rests from offset s of cell k on. Returns the time to the release, infinite if not in this cell.
-
-    most : of the acceleration into the stop that this holds; infinite of a rigid one
-    """
-    q = f.oscillator[0]
-    sin, cos, w, w_low = o.phase[0], o.phase[1], 0.0, 0.0
-    sin_there, cos_there = sin, cos
-    while True:
-        load_rest(q, o, sin_there, cos_there)
-        left = (q.width - s - w) - w_low
-        last = left <= 1.001 * q.rest_step
-        left = left if last else q.rest_step
-        d = first_release(o, left, most)
-        end = min(d, left)
-        take_samples(o, records, k, s + w, s + w + end)
-        add_flight(records.sums, o, end)
-        w, w_low = add(w, w_low, end, 0.0)
-        for m in range(1, len(o.c)):
-            add_change(o, m, end)
-        swing, turn = math.sin(q.omega * w), math.cos(q.omega * w)
-        sin_there, cos_there = sin * turn + cos * swing, cos * turn - sin * swing
-        if last or not d == np.inf:  # NaN, too, is passed on
-            break
-    o.rest_time += w
-    if t.wanted:
-        carry_tangent(t, o, q, w)
-        t.cell[o.lane], t.offset[o.lane] = k, s + w
-    if d < np.inf:
-        o.resting = 0.0
-        mark_rest(o, records, k, s + w, 0.0)
-        return w
-    return d
+def end_rest(o, records, k, s):
+    """The stop lets M1 go."""
+    o.resting = 0.0
+    mark_rest(o, records, k, s, 0.0)
 
 
 @jit

@@ -25,7 +25,7 @@ from vibro_sweep.engine.points.plain_points import APART, UNEVEN, machine_of, mo
 from vibro_sweep.engine.records import Kind, point_of
 from vibro_sweep.engine.tables import cells
 from vibro_sweep.engine.tables.flight import WIDTH
-from vibro_sweep.oscillator.linear import MOTION, Linear, grazing_state, selected
+from vibro_sweep.oscillator.linear import MOTION, STOP_LAW, Linear, grazing_state, selected
 from vibro_sweep.oscillator.stacks import different, dot, finite, only, unrepeated
 from vibro_sweep.oscillator.steady import gap_responses, steady_amplitudes
 
@@ -75,14 +75,14 @@ def _row(values: np.ndarray) -> np.ndarray:
 def _set_contact(points: np.ndarray, q: Linear) -> None:
     """The compliant stops of points, over m_e = 1/(n M^-1 n), and the fastest rate in contact with each."""
     mass = 1 / dot(q.normal, by_mass(q.M, q.normal[..., None])[..., 0])
-    points["contact_mass"], points["by_force"] = mass, q.by_force
-    pairs = ("contact_stiffness", q.k_low, q.k_high), ("contact_damping", q.c_low, q.c_high)
-    for name, low, high in (*pairs, ("contact_preload", q.p_low, q.p_high)):
-        points[name] = np.stack([low / mass, high / mass], -1)
+    points["contact_mass"], points["release"] = mass, q.by_force
+    for j, name in enumerate(STOP_LAW):
+        for n, place in enumerate(("low", "high")):
+            points["contact_law"][..., n, j] = getattr(q, f"{name}_{place}") / mass
     for n in range(2):
         stiffness, damping = points["stiffness"].copy(), points["damping"].copy()
-        stiffness[..., 0] += points["push"] * points["contact_stiffness"][..., n, None]
-        damping[..., 0] += points["push"] * points["contact_damping"][..., n, None]
+        stiffness[..., 0] += points["push"] * points["contact_law"][..., n, 0, None]
+        damping[..., 0] += points["push"] * points["contact_law"][..., n, 1, None]
         points["contact_rate"][..., n] = np.maximum(fastest_rate(stiffness, damping), q.omega)
 
 
