@@ -175,10 +175,9 @@ def test_mirror_images_share_their_tables():
 
 
 def parts_of(contact, fast):
-    """L, H, F, S, as they stand: delta' before delta."""
+    """L, F, S, as they stand: delta' before delta."""
     part, size = part_of(STOP, fast), len(contact.whole)
-    L, H = contact.L[part][:fast, fast:], contact.H[part][fast:, :fast]
-    return L, H, contact.F[part][:fast, :fast], contact.S[part][fast:size, fast:size]
+    return contact.L[part][:fast, fast:], contact.F[part][:fast, :fast], contact.S[part][fast:size, fast:size]
 
 
 @pytest.mark.parametrize("masses", [1, 2, 3, 4])
@@ -186,7 +185,7 @@ def parts_of(contact, fast):
     "z, k, fast", [(0.1, 1e4, 2), (0.5, 1e8, 2), (1.5, 1e8, 2), (10, 1e6, 2), (10, 1e6, 1), (20, 50.0, 1)]
 )
 def test_equations_set_apart(masses, z, k, fast):
-    """They are those of the whole, in other coordinates; z: the damping ratio."""
+    """f - L q flies by F alone, and where it is zero q by S; z: the damping ratio."""
     for seed in range(10):
         G, _, omega = random_contact(masses, k, seed)
         c = 2 * z * np.sqrt(k)
@@ -194,14 +193,16 @@ def test_equations_set_apart(masses, z, k, fast):
         contact = np.zeros(1, law_of(masses)).view(np.recarray)[0]
         contact.equations[STOP] = G
         assert is_set_apart(contact, STOP, fast, omega)
-        L, H, F, S = parts_of(contact, fast)
-        size, nothing = len(S), np.zeros((fast, len(S)))
-        together = np.block([[np.eye(fast) + L @ H, L], [H, np.eye(size)]])
-        apart = np.block([[np.eye(fast), -L], [-H, np.eye(size) + H @ L]])
+        L, F, S = parts_of(contact, fast)
+        size = len(S)
         order = [1, 0, *range(2, fast + size)]
         scale = np.array([np.sqrt(k) if fast == 2 else c, 1.0, *[1.0] * (fast + size - 2)])
-        error = together @ np.block([[F, nothing], [nothing.T, S]]) @ apart - whole(G, omega)[np.ix_(order, order)]
-        assert np.abs(error * scale / scale[:, None] / np.abs(np.linalg.eigvals(F)).max()).max() < 1e-13
+        A = whole(G, omega)[np.ix_(order, order)] * scale / scale[:, None]
+        L = L * scale[fast:] / scale[:fast, None]
+        F, S = F * scale[:fast] / scale[:fast, None], S * scale[fast:] / scale[fast:, None]
+        rate, slow, across = np.abs(np.linalg.eigvals(F)).max(), np.vstack([L, np.eye(size)]), np.eye(fast)
+        assert np.abs(A @ slow - slow @ S).max() < 1e-13 * rate
+        assert np.abs(np.hstack([across, -L]) @ A - F @ np.hstack([across, -L])).max() < 1e-13 * rate
 
 
 def test_a_soft_stop_has_no_slow_motion_beside_it():

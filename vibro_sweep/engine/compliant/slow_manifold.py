@@ -6,11 +6,10 @@ delta creeps (`SPEED`); or the velocity of the other mass that is damped most (`
 delta' in x. Chang's transformation sets the two motions apart:
 
     f = phi + L q          A L + B = L S            S = D + C L
-    q = chi + H phi        C + S H = H F            F = A - L C
-    phi' = F phi           chi' = S chi
+    phi' = F phi           F = A - L C
 
-L and H follow from these by iteration where f is faster than q; nothing large is subtracted, and small entries keep
-their digits. In a contact that lasts phi dies away, and the slow motion is followed alone (slow_contact.py).
+L follows from these by iteration where f is faster than q; nothing large is subtracted, and small entries keep their
+digits. In a contact that lasts phi dies away, and the slow motion q' = S q is followed alone (slow_contact.py).
 """
 
 import math
@@ -32,7 +31,6 @@ def slow_manifold_fields(masses: int) -> list:
         ("slow_rate", float, 6),  # about how fast the slow motion is
         ("S", float, (6, n, n)),
         ("L", float, (6, 2, n)),
-        ("H", float, (6, n, 2)),
         ("F", float, (6, 2, 2)),
         ("bend", float, (6, n)),  # delta'' of the slow motion, by q: the row of delta' of L S
         ("whole", float, (n, n)),  # x' = whole x, of one of them
@@ -75,8 +73,8 @@ def is_set_apart(contact, n, kind, omega):
     if contact.apart[part] == 0:
         other = other_speed(contact, n, kind)
         fill_whole(contact, n, omega, other)
-        found = set_slow(contact, part, fast) and set_share(contact, part, fast)
-        contact.apart[part] = 1 if found else -1
+        contact.apart[part] = 1 if set_slow(contact, part, fast) else -1
+        set_fast(contact, part, fast)
         creeping = 1 if kind == SPEED else max(other - 1, 0)
         contact.slow_rate[part] = slow_rate_of(contact, contact.S[part], creeping, omega)
         for j in range(fast, len(contact.whole)):
@@ -154,46 +152,14 @@ def set_slow(contact, part, fast):
 
 
 @jit
-def set_share(contact, part, fast):
-    """F = A - L C and H = (C + S H) F^-1. Returns whether it converges."""
-    whole, S, L, H, F, old = (
-        contact.whole,
-        contact.S[part],
-        contact.L[part],
-        contact.H[part],
-        contact.F[part],
-        contact.old,
-    )
-    size, states = len(whole), len(contact.y)
+def set_fast(contact, part, fast):
+    """F = A - L C."""
+    whole, L, F = contact.whole, contact.L[part], contact.F[part]
     for a in range(fast):
         for b in range(fast):
             F[a, b] = whole[a, b]
-            for e in range(fast, size):
+            for e in range(fast, len(whole)):
                 F[a, b] -= L[a, e] * whole[e, b]
-    det = F[0, 0] * F[1, 1] - F[0, 1] * F[1, 0] if fast == 2 else F[0, 0]
-    for i in range(size):
-        H[i, 0] = H[i, 1] = 0.0
-    last = fast == states
-    for _ in range(ROUNDS):
-        if last:
-            return True
-        last = True
-        for i in range(fast, states):
-            old[i, 0], old[i, 1] = H[i, 0], H[i, 1]
-        for i in range(fast, states):
-            p, q = whole[i, 0], whole[i, 1] if fast == 2 else 0.0
-            for e in range(fast, states):
-                p, q = p + S[i, e] * old[e, 0], q + S[i, e] * old[e, 1]
-            if fast == 2:
-                H[i, 0], H[i, 1] = (p * F[1, 1] - q * F[1, 0]) / det, (q * F[0, 0] - p * F[0, 1]) / det
-            else:
-                H[i, 0] = p / det
-        for a in range(fast):
-            moved, extent = 0.0, 0.0
-            for i in range(fast, states):
-                moved, extent = moved + abs(H[i, a] - old[i, a]), extent + abs(H[i, a])
-            last = last and moved <= SAME * extent
-    return False
 
 
 @jit
