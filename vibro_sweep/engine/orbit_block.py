@@ -174,7 +174,10 @@ def set_orbits(points, starts, results, n, lanes, w, plan):
 def place_of(phase, tau, q):
     """Cell and offset in the period at which the phase of the force is this one, and not tau, as at t = 0, where it is
     NaN."""
-    time = ((phase - tau) % (2.0 * math.pi)) / q.omega
+    turn = phase - tau
+    if not 0.0 <= turn < 2.0 * math.pi:
+        turn -= 2.0 * math.pi * np.floor(turn / (2.0 * math.pi))
+    time = turn / q.omega
     cell = int(time / q.width) if time > 0.0 else 0
     return (cell, time - cell * q.width) if 0 < time and cell < q.cells else (0, 0.0)
 

@@ -89,12 +89,19 @@ def relaxed_after(contact, n, u):
 
 
 @jit
+def log_of_one_and(x):
+    """ln(1 + x), to rounding also where x is small (Kahan): of the C library kernels call few functions."""
+    y = 1.0 + x
+    return x if y == 1.0 else math.log(y) * (x / (y - 1.0))
+
+
+@jit
 def reach_of_relaxing(contact, n, left):
     """How far a series of s reaches, at most to where it is relaxed."""
     rate, rest = rate_of_relaxing(contact, n), contact.preload[n] / contact.stiffness[n]
     reach = min(left, WIDTH / rate)
     if rest > 0.0:
-        reach = min(reach, math.log1p(contact.relaxed[n] / rest) / rate)
+        reach = min(reach, log_of_one_and(contact.relaxed[n] / rest) / rate)
     return reach
 
 

@@ -50,7 +50,7 @@ def carry_over_contact(t, i, contact, side, w, ended):
             if contact.touched > 0.0:
                 before[1] -= p / contact.touched * before[0]
             if p == 0.0 and relaxes(contact, n):
-                t.forgotten[j, i] += math.log1p(GONE * d * abs(t.places[n * size + j, i]))
+                t.forgotten[j, i] += math.log(1.0 + GONE * d * abs(t.places[n * size + j, i]))
         for a in range(size):
             after[a] = 0.0
             for b in range(size):

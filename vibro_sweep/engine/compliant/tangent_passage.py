@@ -70,7 +70,7 @@ def forget(t, j, who, jump):
     """Count how much vector j of these orbits might have grown at a touch of a stop that still moves a little."""
     for i in range(LANES):
         if who >> i & 1:
-            t.forgotten[j, i] += math.log1p(number(jump, i))
+            t.forgotten[j, i] += math.log(1.0 + number(jump, i))
 
 
 @noinline

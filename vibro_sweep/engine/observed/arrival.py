@@ -220,7 +220,7 @@ def many_periods(section, p):
 def keep_approach(section, scale, p, r, found):
     """Keep how far it is to the approached period, and how fast the orbit goes, by the recurrence over p periods."""
     found.approached_distance = distance_to_go(section, scale, p, r, found.approached_period)
-    found.approached_factor = r.z ** (1.0 / p)
+    found.approached_factor = math.exp(math.log(r.z) / p)
 
 
 @jit

@@ -80,8 +80,10 @@ def residual(section, scale, p, first, fit):
 @jit
 def all_within(fit, radius):
     """Whether all four roots have |z| < radius: the Schur-Cohn test of the polynomial in z / radius."""
+    power = 1.0
     for k in range(NUMBERS):
-        fit[k, 0] = -fit[k, NUMBERS + 1] / radius ** (k + 1)
+        power *= radius
+        fit[k, 0] = -fit[k, NUMBERS + 1] / power
     for m in range(NUMBERS - 1, -1, -1):
         last = fit[m, 0]
         if not abs(last) < 1.0:
@@ -143,7 +145,7 @@ def approaches_by_two_modes(section, scale, p, most, fit, found):
         return False
     found.approached_period = p
     found.approached_distance = distance_to_go(section, scale, p, fit)
-    found.approached_factor = largest_root(fit) ** (1.0 / p)
+    found.approached_factor = math.exp(math.log(largest_root(fit)) / p)
     return True
 
 
