@@ -1,27 +1,21 @@
 """Tangent vectors in the coordinates of a contact: (delta, delta', w2, w2', ..), of law.py."""
 
 from vibro_sweep.engine.simd.jit import jit
-from vibro_sweep.engine.variational.tangent_at_rest import motion_in
+from vibro_sweep.engine.variational.mapped import put_vector, vector_of
 
 
 @jit
 def set_before(t, i, contact, side, j):
     """Vector j as (delta, delta', w2, ..)."""
-    for m in range(len(contact.push)):
-        contact.before[2 * m], contact.before[2 * m + 1] = motion_in(t, i, m, j)
+    vector_of(t, i, j, contact.before)
     to_contact(contact, side, contact.before)
 
 
 @jit
 def put_after(t, i, contact, side, j):
     """Vector j becomes the one that is (delta, delta', w2, ..) in `after`."""
-    Z, to, after, size = t.Z, t.to_frame, contact.after, len(t.growth)
-    from_contact(contact, side, after)
-    for m in range(size):
-        z = 0.0
-        for a in range(size):
-            z += to[size * m + a, i] * after[a]
-        Z[size * m + j, i] = z
+    from_contact(contact, side, contact.after)
+    put_vector(t, i, j, contact.after)
 
 
 @jit

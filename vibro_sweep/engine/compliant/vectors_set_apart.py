@@ -6,8 +6,8 @@ determinant. With c the damping of the stop, and r that of all else, that is
 
     e^{(tr F) u},    tr F = -(c + r) - tr S,
 
-less what the first ones turn by; c may be larger than all other numbers by far. Of two last vectors the first grows by
-the slower rate of F.
+less what the first ones grow by; c may be larger than all other numbers by far. How two last vectors turn, and what the
+first of them grows by, phi = f - L q says: it flies by e^{F u}, whatever slow motion is in them.
 """
 
 import math
@@ -27,7 +27,11 @@ LONGEST = 1e200  # of what a vector does to the place of a stop that is at rest
 
 def vectors_fields(masses: int) -> list:
     """The fields of `law_of` for them."""
-    return [("flown", float, (2, 2 * masses))]  # terms of a series
+    return [
+        ("flown", float, (2, 2 * masses)),  # terms of a series
+        ("begins", float, (2, 2)),  # phi of the two last vectors before a flight, and
+        ("ends", float, (2, 2)),  # of those in whose directions it ends
+    ]
 
 
 @jit
@@ -67,43 +71,89 @@ def place_of_fast(contact, n, kind, a):
 @jit
 def fly_vectors_apart(t, i, contact, side, n, kind, u):
     """The vectors after the time u."""
-    size, fast = len(t.growth), count_of(kind)
-    slow, turned = size - fast, 0.0
+    size, fast, turned = len(t.growth), count_of(kind), 0.0
+    slow, lengths = size - fast, t.square_length
+    if fast == 2:
+        fill_fast(t, i, contact, side, n, kind, contact.begins)
     for j in range(slow):
         fly_slowly(t, i, contact, side, n, kind, j, u)
     t.mixed[i] = 1.0
     orthogonalise(t, only(i))
     for j in range(slow):
-        turned += 0.5 * math.log(t.square_length[j, i])
+        turned += 0.5 * math.log(lengths[j, i])
         for b in range(fast):
             t.normal[place_of(size, j, slow + b), i] = 0.0
     shrink_volume(t, i, contact.damping[n], u)
     whole, low = multiply(-contact.damping[n], 0.0, u, 0.0)
     whole, low = add(whole, low, contact.trace[n] * u - turned, 0.0)
-    t.volume[i] = 1.0
-    for j in range(size):
-        t.volume[i] *= math.sqrt(t.square_length[j, i])
     grows = whole
     if fast == 2:
-        grows, along = slower_rate(contact.F[part_of(n, kind)]) * u, place_of(size, slow, slow + 1)
-        t.normal[along, i] = 0.0
+        fill_fast(t, i, contact, side, n, kind, contact.ends)
+        grows = turn_fast(t, i, contact, contact.F[part_of(n, kind)], u)
         whole, low = add(whole, low, -grows, 0.0)
-    for b in range(fast):
-        turned = 0.5 * math.log(t.square_length[slow + b, i])
-        more = grows if b < fast - 1 else whole
-        add_log(t, slow + b, i, more - turned, low if b == fast - 1 else 0.0)
-        for first in range(0, len(t.places) - size + 1, size):
-            place = t.places[first + slow + b, i] * math.exp(min(turned - more, 600.0))
-            t.places[first + slow + b, i] = min(max(place, -LONGEST), LONGEST)
+    t.volume[i] = 1.0
+    for j in range(size):
+        t.volume[i] *= math.sqrt(lengths[j, i])
     count_growth(t, only(i))
+    for b in range(fast):
+        length = 0.5 * math.log(lengths[slow + b, i])
+        more = grows if b < fast - 1 else whole
+        add_log(t, slow + b, i, more - length, low if b == fast - 1 else 0.0)
+        for first in range(0, len(t.places) - size + 1, size):
+            place = t.places[first + slow + b, i] * math.exp(min(length - more, 600.0))
+            t.places[first + slow + b, i] = min(max(place, -LONGEST), LONGEST)
 
 
 @jit
-def slower_rate(F):
-    """The larger real part of the eigenvalues of F, which are negative."""
-    gamma, det = -0.5 * (F[0, 0] + F[1, 1]), F[0, 0] * F[1, 1] - F[0, 1] * F[1, 0]
-    square = gamma * gamma - det
-    return -gamma if square <= 0.0 else -det / (gamma + math.sqrt(square))
+def fill_fast(t, i, contact, side, n, kind, phi):
+    """phi = f - L q of the two last vectors, one in each column."""
+    L, x, size = contact.L[part_of(n, kind)], contact.before, len(t.growth)
+    for b in range(2):
+        set_before(t, i, contact, side, size - 2 + b)
+        to_slow(contact, n, kind, x)
+        for a in range(2):
+            phi[a, b] = x[a]
+            for e in range(2, size):
+                phi[a, b] -= L[a, e] * x[e]
+
+
+@jit
+def turn_fast(t, i, contact, F, u):
+    """The two last vectors, which are at right angles to all others and to each other, become unit vectors in the
+    directions in which those before have flown. Returns the logarithm of the growth of the first of them.
+
+    What flies by e^{F u} is phi alone: in the present ones, with phi in `ends`, those before are phi^-1 e^{F u} phi_0.
+    """
+    size, lengths, before, phi = len(t.growth), t.square_length, contact.begins, contact.ends
+    slow, (decay, c, s, gamma) = size - 2, fast_flight(F, u)
+    r, q = math.sqrt(lengths[slow, i]), math.sqrt(lengths[slow + 1, i])
+    det = phi[0, 0] * phi[1, 1] - phi[0, 1] * phi[1, 0]
+    for b in range(2):
+        x, y = before[0, b], before[1, b]
+        x, y = c * x + s * ((F[0, 0] + gamma) * x + F[0, 1] * y), c * y + s * (F[1, 0] * x + (F[1, 1] + gamma) * y)
+        before[0, b] = r * (phi[1, 1] * x - phi[0, 1] * y) / det
+        before[1, b] = q * (phi[0, 0] * y - phi[1, 0] * x) / det
+    length = math.hypot(before[0, 0], before[1, 0])
+    x, y = before[0, 0] / length, before[1, 0] / length
+    t.normal[place_of(size, slow, slow + 1), i] = (x * before[0, 1] + y * before[1, 1]) / length
+    for m in range(size):
+        a, b = t.Z[size * m + slow, i] / r, t.Z[size * m + slow + 1, i] / q
+        t.Z[size * m + slow, i], t.Z[size * m + slow + 1, i] = x * a + y * b, x * b - y * a
+    lengths[slow, i] = lengths[slow + 1, i] = 1.0
+    return math.log(length) - decay
+
+
+@jit
+def fast_flight(F, u):
+    """e^{F u} = e^{-decay} (c + s (F + gamma)). Returns decay, c, s, gamma."""
+    gamma = -0.5 * (F[0, 0] + F[1, 1])
+    det = F[0, 0] * F[1, 1] - F[0, 1] * F[1, 0]
+    square = det - gamma * gamma
+    root = math.sqrt(abs(square))
+    if square >= 0.0:
+        return gamma * u, math.cos(root * u), math.sin(root * u) / root if root > 0.0 else u, gamma
+    fall = math.expm1(-2.0 * root * u)
+    return det / (gamma + root) * u, 1.0 + 0.5 * fall, -fall / (2.0 * root), gamma
 
 
 @jit

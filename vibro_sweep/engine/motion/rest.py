@@ -6,7 +6,7 @@ from vibro_sweep.engine.motion.first_contact import first_contact, set_gap
 from vibro_sweep.engine.motion.orbits import restitution_of, round_off
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.tables.flight import ORDER, bound_third_over, evaluate
-from vibro_sweep.engine.tables.series import fill_taylor
+from vibro_sweep.engine.tables.series import clear, fill_taylor
 from vibro_sweep.engine.variational import tangent_at_rest, tangent_flight
 
 CHATTER = 2.0**-53  # of a period: the error allowed in time when the rest of a chatter sequence is summed up
@@ -80,6 +80,7 @@ def carry_tangent(t, o, q, w):
     while w > 0.0:
         step = min(w, q.rest_step)
         w -= step
+        clear(t.constrained)
         for column in range(2, 2 * len(c)):
             for i in range(len(c)):
                 for n in range(ORDER):
@@ -88,7 +89,7 @@ def carry_tangent(t, o, q, w):
             fill_taylor(q.held, 1, 0.0, 0.0, 0.0, 0.0, q.omega, c)
             for i in range(1, len(c)):
                 t.constrained[2 * i, column], t.constrained[2 * i + 1, column] = evaluate(c[i], step)
-        tangent_at_rest.release(t, o.lane)
+        tangent_at_rest.hold(t, o.lane)
 
 
 @jit

@@ -50,7 +50,7 @@ def tangents_of(masses: int, compliant: bool = False) -> np.dtype:
         ("flown", np.int64, (LANES,)),  # whole cells of that flight
         ("mixed", float, (LANES,)),  # 0: each vector lies in the plane of one mode, where free flight turns it
         ("Z", float, (n * n, LANES)),  # columns of Z (n, n) are vectors
-        # what a rest multiplies (dx2, dv2, dx3, ...) by, from row and column 2 on; and one of them before it and after
+        # what a rest multiplies (x1, v1, x2, ...) of vectors by; and one of them before it and after
         ("constrained", float, (n, n)),
         ("before", float, (n,)),
         ("after", float, (n,)),
