@@ -19,6 +19,8 @@ from vibro_sweep.engine.compliant.contact_pieces import (
 from vibro_sweep.engine.compliant.law import law_of
 from vibro_sweep.engine.compliant.passage_tables import passages_of
 from vibro_sweep.engine.compliant.slow_manifold import is_set_apart, part_of
+from vibro_sweep.engine.compliant.stop_laws import AT_PLACE, BREAKS, RELAXES
+from vibro_sweep.engine.compliant.tangent_in_contact import jump_at_release
 
 ORBIT, STOP, PRELOAD = 3, 1, 0.3
 
@@ -212,3 +214,33 @@ def test_a_soft_stop_has_no_slow_motion_beside_it():
     contact.equations[STOP] = G
     with np.errstate(all="ignore"):
         assert not is_set_apart(contact, STOP, 2, omega)
+
+
+@pytest.mark.parametrize("c", [0.0, 3.0])
+@pytest.mark.parametrize("then, form", [(AT_PLACE, (1, 0, 0)), (RELAXES, "force"), (BREAKS, "held")])
+def test_the_jump_at_a_release_is_the_saltation(c, then, form):
+    """delta'' grows by F where the force ceases: S = 1 + F e n^T/g', of (delta, delta'), for any guard g."""
+    k, p, hold = 50.0, 0.3, 0.4
+    form = {"force": (k, c, p), "held": (k, c, p + hold)}.get(form, form)
+    contact = np.zeros(1, law_of(1)).view(np.recarray)[0]
+    contact.damping[STOP], contact.force[STOP] = c, (k, c, p)
+    contact.guard[STOP, 0], contact.then[STOP, 0] = form, then
+    delta, speed, acceleration = -(form[2] - c * 0.7 * (form[1] != 0)) / form[0], -0.7, -1.9
+    contact.y[0], contact.y[1], contact.acceleration = delta, speed, acceleration
+    force, slope = k * delta + c * speed + p, form[0] * speed + form[1] * acceleration
+    S = np.eye(2) + np.outer([0, 1], np.multiply(force / slope, form[:2]))
+    by_delta, by_pi = jump_at_release(contact, STOP)
+    of_pi = np.array([[1, 0], [by_delta, 1 + by_pi]]) @ np.array([[1, 0], [c, 1]])  # pi = delta' + c delta
+    assert of_pi == pytest.approx(S, abs=1e-13)
+    assert (np.linalg.det(S) == pytest.approx(1, abs=1e-13)) == (then != BREAKS or c == 0)
+
+
+def test_pieces_leave_contacts_alone_that_end_otherwise():
+    tables = Tables(1, 100.0, 2)
+    contact = np.zeros(1, law_of(1)).view(np.recarray)[0]
+    contact.equations[STOP], contact.compliant[STOP] = tables.G, 1
+    for then, passed in ((AT_PLACE, True), (BREAKS, False)):
+        contact.guards[STOP], contact.then[STOP, 0] = 1, then
+        set_pieces(tables.passage, ORBIT, contact, np.full(2, 0.5 * np.pi / tables.h), 1.0)
+        ends = tables.rows("ends", (3, 2, PIECES, tables.inputs))[:, STOP]
+        assert (ends[GUARD, :, 0].min() < 0) == passed

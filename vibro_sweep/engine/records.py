@@ -25,7 +25,7 @@ def point_of(kind: Kind) -> np.dtype:
     contact = [
         # of the left stop and the right one the numbers of its law, over m_e: k, which is 0 if it is rigid, c and p
         ("contact_law", float, (2, len(STOP_LAW))),
-        ("release", np.int64),  # of engine/compliant/laws.py
+        ("release", np.int64),  # of engine/compliant/stop_laws.py
         ("contact_rate", float, 2),  # the fastest in contact
         ("contact_mass", float),  # m_e
     ]

@@ -16,7 +16,7 @@ import math
 import numpy as np
 from numpy.polynomial import Chebyshev, Polynomial
 
-from vibro_sweep.engine.compliant.laws import is_shared
+from vibro_sweep.engine.compliant.stop_laws import is_shared
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.tables.series import clear, derive

@@ -1,8 +1,8 @@
 """Flight in contact: Taylor series of delta, w2, ..., of the force, and of tangent vectors; and where the contact ends.
 
 A series reaches as far as rate * time <= 1/2 (tables/flight.py), with the fastest rate in contact. The end is the first
-zero of a guard (laws.py); that which delta has at the touch is divided out (motion/first_contact.py), so that contacts
-of any shortness keep their digits, and no end is passed.
+zero of a guard (stop_laws.py); that which delta has at the touch is divided out (motion/first_contact.py), so that
+contacts of any shortness keep their digits, and no end is passed.
 """
 
 import numpy as np

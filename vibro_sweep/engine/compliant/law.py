@@ -13,10 +13,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.engine.compliant.laws import law_fields, set_law_of_stop
 from vibro_sweep.engine.compliant.passage_tables import passages_of, set_passage
 from vibro_sweep.engine.compliant.relaxing import bring_stops
 from vibro_sweep.engine.compliant.slow_manifold import slow_manifold_fields
+from vibro_sweep.engine.compliant.stop_laws import law_fields, set_law_of_stop
 from vibro_sweep.engine.compliant.vectors_set_apart import vectors_fields
 from vibro_sweep.engine.motion.distance import NEAR
 from vibro_sweep.engine.records import Kind

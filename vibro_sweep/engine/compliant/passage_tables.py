@@ -3,7 +3,7 @@
 import numpy as np
 
 from vibro_sweep.engine.compliant.contact_pieces import piece_fields, set_pieces
-from vibro_sweep.engine.compliant.laws import relaxes
+from vibro_sweep.engine.compliant.stop_laws import relaxes
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.simd.memory import record

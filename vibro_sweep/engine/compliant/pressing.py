@@ -17,9 +17,9 @@ from vibro_sweep.engine.compliant.contact_series import (
     watch_contact,
 )
 from vibro_sweep.engine.compliant.law import lane_of
-from vibro_sweep.engine.compliant.laws import PLACE, RELAXES
 from vibro_sweep.engine.compliant.relaxing import bring_stops
 from vibro_sweep.engine.compliant.slow_contact import fast_that_died, load_slow, slow_step
+from vibro_sweep.engine.compliant.stop_laws import AT_PLACE, RELAXES
 from vibro_sweep.engine.compliant.tangent_in_contact import CONTINUED, RELAXED, UNRELAXED, carry_over_contact
 from vibro_sweep.engine.compliant.vectors_set_apart import fly_vectors_apart, set_vectors_apart
 from vibro_sweep.engine.motion.energy_sums import add_contact
@@ -195,7 +195,7 @@ def end_contact(law, stops, o, t, k, s):
     contact, side = law.orbits[o.lane], o.resting
     n, y = lane_of(side), contact.y
     guard, then = contact.guard[n, contact.ended_by], contact.then[n, contact.ended_by]
-    if then == PLACE:
+    if then == AT_PLACE:
         y[0], y[1] = 0.0, min(y[1], 0.0)
     elif guard[1] * math.sqrt(contact.stiffness[n]) < guard[0]:  # what is better conditioned
         y[0] = -(guard[1] * y[1] + guard[2]) / guard[0]

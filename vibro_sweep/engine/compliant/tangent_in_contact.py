@@ -14,8 +14,8 @@ import math
 
 from vibro_sweep.engine.compliant.contact_vectors import put_after, set_before
 from vibro_sweep.engine.compliant.law import lane_of
-from vibro_sweep.engine.compliant.laws import RELAXES, relaxes, value_of
 from vibro_sweep.engine.compliant.relaxing import GONE
+from vibro_sweep.engine.compliant.stop_laws import RELAXES, relaxes, value_of
 from vibro_sweep.engine.compliant.touch_while_relaxing import touch_relaxing
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.simd.lanes import alike

@@ -1,9 +1,9 @@
 """What happens where a mass is at a compliant stop, or inside it, and where it has left one."""
 
 from vibro_sweep.engine.compliant.law import lane_of
-from vibro_sweep.engine.compliant.laws import BREAKS, relaxes, value_of
 from vibro_sweep.engine.compliant.pressing import begin_contact
 from vibro_sweep.engine.compliant.relaxing import speed_of_stop
+from vibro_sweep.engine.compliant.stop_laws import BREAKS, relaxes, value_of
 from vibro_sweep.engine.motion.distance import delta_of
 from vibro_sweep.engine.motion.impacts import EXPLAINED
 from vibro_sweep.engine.motion.orbits import wall_of

@@ -3,9 +3,9 @@
 A law is data: the force is a linear form of (delta, delta', 1), and so is each guard, which is positive as long as the
 contact lasts. Where the first of them is zero the contact ends, and then
 
-    PLACE     delta = 0: the mass leaves the stop where it has touched it
+    AT_PLACE  delta = 0: the mass leaves the stop where it has touched it
     RELAXES   the stop stays behind at delta, without a force, and relaxes to delta = 0
-    BREAKS    the force ceases at once, wherever the mass is
+    BREAKS    the force ceases at once, where the mass is before the stop, delta < 0
 
 A contact begins where delta = 0, or where the relaxing stop is.
 """
@@ -15,7 +15,7 @@ import numpy as np
 from vibro_sweep.engine.simd.jit import jit
 
 DISPLACEMENT, FORCE = range(2)  # release
-PLACE, RELAXES, BREAKS = range(3)
+AT_PLACE, RELAXES, BREAKS = range(3)
 
 
 def law_fields() -> list:
@@ -39,7 +39,7 @@ def set_law_of_stop(contact, n, numbers, release):
     if by_force:
         add_guard(contact, n, RELAXES, k, c, p)
     if not by_force or p > 0.0:
-        add_guard(contact, n, PLACE, 1.0, 0.0, 0.0)
+        add_guard(contact, n, AT_PLACE, 1.0, 0.0, 0.0)
 
 
 @jit
