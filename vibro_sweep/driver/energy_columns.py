@@ -34,15 +34,13 @@ def energies_of(block: Block, steps: np.ndarray, kind: Kind, results: np.ndarray
     }
     sums = np.zeros(len(systems), sums_of(kind.masses))
     sums["back"], sums["origin"] = systems["back"], systems["origin"]
-    # contiguous, in whatever order the points come: for each layout the kernel would be compiled anew
-    masses = np.ascontiguousarray(_contact_masses(block, shape).reshape(-1))
     run_energy(
-        systems, begins, resting, relaxed, masses, block.plan.record, workspace, plan, sums, wanted["loss"],
+        systems, begins, resting, relaxed, block.plan.record, workspace, plan, sums, wanted["loss"],
         wanted["squares"], wanted["peaks"], outcome,
     )  # fmt: skip
     known = np.where(status.is_valid(outcome), 1.0, np.nan)
     time = block.plan.record * 2 * np.pi / systems["omega"]
-    named = {"impact_power": known * wanted["loss"] / time}
+    named = {"impact_power": known * _contact_masses(block, shape).reshape(-1) * wanted["loss"] / time}
     for i, name in enumerate(state(kind.masses)):
         named[f"rms_{name}"] = known * np.sqrt(wanted["squares"][:, i] / time)
         named[f"peak_{name}"] = known * wanted["peaks"][:, i]

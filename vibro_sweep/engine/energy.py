@@ -31,13 +31,13 @@ def work_on(law):
 
 
 @exported
-def run_energy(points, begins, resting, relaxed, masses, periods, w, plan, sums, loss, squares, peaks, outcome):
+def run_energy(points, begins, resting, relaxed, periods, w, plan, sums, loss, squares, peaks, outcome):
     """Carry each orbit over its record. n = orbits.
 
     points: (n,). begins: (n, 2 N) in contact coordinates, `resting` (n,) the stops that they rest on, and `relaxed`
-    (n, 2) where stops are that relax. masses: (n,) of the contact. sums: (n,) `sums_of`, of which each orbit's has what
-    leads from contact coordinates to its masses; the first one is scratch. outcome: (n,), NOT_COMPUTED where an orbit
-    is wanted; then its status.
+    (n, 2) where stops are that relax. sums: (n,) `sums_of`, of which each orbit's has what leads from contact
+    coordinates to its masses; the first one is scratch. loss: (n,), of a unit mass. outcome: (n,), NOT_COMPUTED where
+    an orbit is wanted; then its status.
     """
     e, o = w.ensemble, w.ensemble.orbits[0]
     e.tangent[0].wanted = e.strike[0].measured = False
@@ -59,6 +59,6 @@ def run_energy(points, begins, resting, relaxed, masses, periods, w, plan, sums,
             Readings(w.section, False, w.growth, 0),
         )
         outcome[n] = o.status
-        loss[n] = masses[n] * (one[0].loss + work_on(e.law))
+        loss[n] = one[0].loss + work_on(e.law)
         for j in range(len(begins[n])):
             squares[n, j], peaks[n, j] = one[0].squares[j], one[0].peaks[j]
