@@ -132,9 +132,11 @@ def _recorded(machine, orbit, end, start_time) -> Recorded:
 
 
 def recorded_until(found: Recorded, end: float) -> Recorded:
-    """The same as recorded until an earlier end: rests that last longer are known until then."""
-    rests = [((on,), (min(off, end),)) for (on,), (off,) in found.rows["rest"]]
-    return found._replace(end=end, rows=found.rows | {"rest": rests})
+    """The same as recorded until an earlier end: rests that last longer are known until then, later ones not at all."""
+    known = [i for i, ((on,), _) in enumerate(found.rows["rest"]) if on < end]
+    rests = [((on,), (min(off, end),)) for (on,), (off,) in (found.rows["rest"][i] for i in known)]
+    sides = found.sides | {"rest": [found.sides["rest"][i] for i in known]}
+    return Recorded(sides, found.rows | {"rest": rests}, end)
 
 
 def _until_rests(orbit: Recorded, kind):
