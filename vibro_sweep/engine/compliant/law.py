@@ -205,6 +205,14 @@ def end_beside(law, i):
 
 
 @inline
+def contacts_of(law, i):
+    """The contacts of orbit i that are counted."""
+    if law is not None:
+        return law.orbits[i].contacts[0] + law.orbits[i].contacts[1]
+    return 0
+
+
+@inline
 def count_contacts_anew(law, i):
     """Count the contacts of orbit i from here on."""
     if law is not None:

@@ -18,7 +18,7 @@ def set_coordinates(q, p):
                 spare, least = i, held
     along = 0.0
     for i in range(n):
-        along += q.normal[i] * q.normal[i] / q.M[i, i]
+        along += q.normal[i] * (q.normal[i] / q.M[i, i])
         for j in range(n):
             p.P[i, j] = p.back[i, j] = 0.0
     row = 1

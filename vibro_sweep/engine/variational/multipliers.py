@@ -17,7 +17,14 @@ U Q_0^T.
 
 import math
 
-from vibro_sweep.engine.compliant.law import begin_beside, count_contacts_anew, end_beside, is_at_rest, keep_between
+from vibro_sweep.engine.compliant.law import (
+    begin_beside,
+    contacts_of,
+    count_contacts_anew,
+    end_beside,
+    is_at_rest,
+    keep_between,
+)
 from vibro_sweep.engine.compliant.section_vectors import begin_with_places, count_vectors, end_with_places
 from vibro_sweep.engine.motion.orbits import reset_counts, set_state
 from vibro_sweep.engine.motion.together import flight_of, stops_of
@@ -100,7 +107,8 @@ def read_period(e, w, results, lanes, which):
             for j in range(2, len(t.growth), 2):
                 largest = max(largest, o.largest[j])
             graze = 2.0**-52 * (omega * largest / o.slowest) ** 2
-            off = OFF / ASIDE * math.sqrt(1.0 + o.impacts_left + o.impacts_right)
+            instants = 1.0 + o.impacts_left + o.impacts_right + 2.0 * contacts_of(e.law, i)  # a touch and a release
+            off = OFF / ASIDE * math.sqrt(instants)
             known = end_with_places(e.law, t, i, w.ends, w.matrix, w.logs, w.low)
             found = w.multipliers[i]
             if which == BESIDE:
