@@ -132,6 +132,12 @@ def test_a_start_behind_a_stop_has_a_status():
     assert orbit_of(engine_machine(machine), [-2, 0], 1).status == BEYOND_STOP
 
 
+def test_more_elements_than_phases_can_name_are_refused():
+    machine = one_mass(friction=[Friction([1], 0.1 * n, 0.1 * n, float(n)) for n in range(25)])
+    with pytest.raises(ValueError, match="there are 25; 24 at most"):
+        engine_machine(machine)
+
+
 @pytest.mark.parametrize(
     "law",
     [{"R": 0.8}, {"k_stop": 1e4}, {"k_stop": 1e4, "c_stop": 5, "release": "force"}, {"k_stop": 50, "preload": 0.2}],

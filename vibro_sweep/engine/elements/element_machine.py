@@ -16,11 +16,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.engine.points.exact import accelerations, as_fractions, inverse, product
 from vibro_sweep.oscillator.contact_element import NAMES, Contact
 from vibro_sweep.oscillator.linear import contact
 
 RIGID, COMPLIANT, BY_FORCE, RUBS = range(4)  # BY_FORCE: compliant, with a damper, and left where its force is zero
+MOST = 24  # elements, whose modes together make a number of 64 bits
 CELLS = 24  # of a forcing period: at their ends the phase of the force is known to the last digit
 
 
@@ -80,7 +82,12 @@ def stops_of(contacts: Sequence[Contact]) -> list[Stop]:
 def machine_of(
     M, K, C, constant, harmonics: Sequence[tuple], omega: float, tau: float, elements: Sequence[Stop | Friction]
 ) -> Machine:  # fmt: skip
-    """The machine of these matrices (N, N). harmonics: (h, sine, cosine), each of these (N,)."""
+    """The machine of these matrices (N, N). harmonics: (h, sine, cosine), each of these (N,).
+
+    Raises ArgumentError for more than `MOST` elements.
+    """
+    if len(elements) > MOST:
+        raise ArgumentError(f"elements: there are {len(elements)}; {MOST} at most")
     rows = [[a * e.side for a in e.normal] if isinstance(e, Stop) else [*e.direction] for e in elements]
     P, place = coordinates(as_fractions(np.array(rows, float).reshape(-1, len(M))), np.array(M), np.array(K))
     back = inverse(P)

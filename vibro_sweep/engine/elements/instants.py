@@ -1,17 +1,15 @@
 """What happens at one instant: impacts one after the other, touches and releases, who is held, everything else.
 
 Guards that end within the rounding of the time end together. Of all closed rigid stops that are approached, the first
-of the list is struck with its own R, then all are looked at again. What may be held are closed rigid stops, preloaded
-ones and friction elements without speed: all of them are at first; then the first one whose state contradicts itself
-changes, until none does (least-index pivoting). Exactly at a limit the first Taylor coefficient that is not zero
-decides; if all are zero, the state holds.
+of the list is struck with its own R, then all are looked at again. Who is held: held_elements.py.
 """
 
 import math
 
 from vibro_sweep.engine.elements.element_machine import BY_FORCE, CELLS, RIGID, RUBS
+from vibro_sweep.engine.elements.element_states import kick, place, set_speed
+from vibro_sweep.engine.elements.held_elements import hold_candidates
 from vibro_sweep.engine.elements.laws_of_elements import (
-    DOWN,
     FORCE,
     FREE,
     GUARDS,
@@ -24,19 +22,15 @@ from vibro_sweep.engine.elements.laws_of_elements import (
     SLIP,
     SLIP_DOWN,
     SLIP_UP,
-    UP,
-    instead,
     may_be_held,
 )
-from vibro_sweep.engine.elements.moving import depth, leading, load_inputs, speed, time_of
+from vibro_sweep.engine.elements.moving import depth, load_inputs, speed, time_of
 from vibro_sweep.engine.elements.phases import across, find_phase
 from vibro_sweep.engine.simd.jit import jit, noinline
-from vibro_sweep.engine.tables.twofold import add
 
 IMPACT, TOUCH, RELEASE, REST, LEAVE, STICK, SLIPS = range(7)
 TIE = 2.0**-50  # of the time: events that are not further apart are one instant; of the velocities: none
 MOST_IMPACTS = 1000  # at one instant
-MOST_CHANGES = 1000  # of who is held, at one instant
 FLAT = 2.0**-49  # of its place: a mass that bounces less high on a preloaded stop rests
 
 
@@ -176,82 +170,6 @@ def bounces_end(m, p, o, e):
         return v <= 0.0 and -2.0 * v <= pull * (1.0 - m.law[e, 1]) * tick
     room = min(pull, m.law[e, 3] * across(m, e, e) - pull)
     return v * v <= 2.0 * room * FLAT * abs(m.law[e, 0])
-
-
-@noinline
-def hold_candidates(m, p, o):
-    """Who is held, and the phase to come."""
-    now, some = o.now[0], False
-    for e in range(len(o.modes)):
-        if o.candidate[e]:
-            some = True
-            if m.kind[e] == RUBS or may_be_held(m, e):
-                o.modes[e] = HELD
-                kick(m, o, e, 0.0)
-            else:
-                o.modes[e] = FREE
-    for e in range(len(o.modes)):
-        if o.candidate[e]:
-            set_speed(m, o, e, 0.0)
-            o.at[e] = 1 if m.kind[e] == RUBS else 2
-    for change in range(2 * MOST_CHANGES):
-        now.phase = find_phase(m, p, o.modes, o.made)
-        if not some or not change_one(m, p, now.phase, o, change < MOST_CHANGES):
-            return
-
-
-@jit
-def change_one(m, p, f, o, static):
-    """Change the first candidate that contradicts itself; whether there is one. static: what a stick holds."""
-    load_inputs(m, p, f, o)
-    for n in range(p.guards[f, 0]):
-        e, guard = p.element[f, n], p.guard[f, n]
-        if o.candidate[e]:
-            zeros = o.at[e] if guard == REACH or guard == OPEN or guard == SLIP else 0
-            less = m.law[e, 2] - m.law[e, 1] if (guard == UP or guard == DOWN) and not static else 0.0
-            if leading(p.guard_series[f, n], o.q, zeros, less)[1] < 0:
-                o.modes[e] = instead(m, e, guard)
-                return True
-    return False
-
-
-@jit
-def place(m, o, e, delta):
-    """Set delta."""
-    j = m.coordinate[e]
-    if j >= 0 and abs(m.row[e, j]) == 1.0:
-        o.z[j], o.z_low[j] = add(m.row[e, j] * m.law[e, 0], 0.0, m.row[e, j] * delta, 0.0)
-    else:
-        past = (depth(m, o, e) - delta) / across(m, e, e)
-        for i in range(len(m.free)):
-            o.z[i] -= past * m.push[e, i]
-
-
-@jit
-def set_speed(m, o, e, v):
-    """Set delta' or w, where it is a coordinate."""
-    j = m.coordinate[e]
-    if j >= 0:
-        i = len(m.free) + j
-        o.z[i], o.z_low[i] = (v + m.law[e, 0] if m.kind[e] == RUBS else v) / m.row[e, j], 0.0
-
-
-@jit
-def kick(m, o, e, R):
-    """An impulse along the row: delta' or w becomes -R times itself. All else that it moves feels it through M."""
-    v, N = speed(m, o, e), len(m.free)
-    part = (1.0 + R) / across(m, e, e)
-    for i in range(N):
-        o.z[N + i], o.z_low[N + i] = add(o.z[N + i], o.z_low[N + i], -m.push[e, i] * (part * v), 0.0)
-    set_speed(m, o, e, -R * v)
-    if m.kind[e] == RUBS:  # the change of z' says it all
-        return
-    for j in range(len(o.z)):
-        along = 0.0
-        for i in range(N):
-            along += m.row[e, i] * o.jump[N + i, j]
-        for i in range(N):
-            o.jump[N + i, j] -= m.push[e, i] * (part * along)
 
 
 @jit
