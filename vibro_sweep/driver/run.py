@@ -13,7 +13,6 @@ from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.checks.file_names import file_to_write
 from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.driver.progress import given_or_bar
-from vibro_sweep.driver.run_continuation import run_continuation
 from vibro_sweep.driver.sweep import RunReport, check_how, run_sweep
 from vibro_sweep.files.opening import open_file
 from vibro_sweep.scene import Continuation, Scene
@@ -75,6 +74,8 @@ def run(
         return run_sweep(scene, output, workers, executor, progress, mode, block)
     if block is not None:
         raise ArgumentError(not_allowed("block", block, "None of a scene of branches or curves"))
+    from vibro_sweep.driver.run_continuation import run_continuation  # a sweep needs nothing of it
+
     with given_or_bar(progress) as tell:
         computed = run_continuation(scene, output, workers, executor, tell, mode)
     return _report(output, computed)

@@ -108,7 +108,9 @@ class _Whole(JITCodeLibrary):
             raise LinkError(f"{self.name} refers to {', '.join(lost)}")
 
     def _optimize(self):
-        super()._optimize_final_module()
+        """Once, at LLVM's first level and without its vectorisers: kernels are vectors already, and as fast so."""
+        passes, builder = self._codegen._module_pass_manager(opt=1, loop_vectorize=False, slp_vectorize=False)
+        passes.run(self._final_module, builder)
 
     def _get_module_for_linking(self):
         """The names alone: an exported kernel is linked with nothing, and reading its code again takes 30 ms."""
@@ -127,18 +129,6 @@ class _Whole(JITCodeLibrary):
         finally:
             set_option("vibro_sweep", "-align-loops=0")
             set_option("vibro_sweep", "-align-all-functions=0")
-
-
-class _Quick(_Whole):
-    """An exported kernel that LLVM optimises once, and at its first level.
-
-    Without its vectorisers, and with fewer passes, of the kernel of all continuation it makes code that is as fast,
-    and a first orbit waits an eighth less for it.
-    """
-
-    def _optimize(self):
-        passes, builder = self._codegen._module_pass_manager(opt=1, loop_vectorize=False)
-        passes.run(self._final_module, builder)
 
 
 def _keep_what_is_there() -> None:
@@ -228,12 +218,6 @@ class WholeCompiler(Compiler):
             if collecting:
                 _keep_what_is_there()
                 gc.enable()
-
-
-class QuickCompiler(WholeCompiler):
-    """The compiler of an exported kernel with hundreds of parts."""
-
-    library = _Quick
 
 
 class PartCompiler(WholeCompiler):

@@ -17,16 +17,10 @@ if config.DISABLE_JIT:
 
 TESTED = ("0.62", "0.63", "0.64", "0.65", "0.66", "0.67", "0.68")  # versions of numba with which compiler.py was tried
 IS_TESTED = ".".join(map(str, numba.version_info.short)) in TESTED
-NoInlineCompiler = PartCompiler = QuickCompiler = SmallCompiler = WholeCompiler = None
+NoInlineCompiler = PartCompiler = SmallCompiler = WholeCompiler = None
 if IS_TESTED:
     with contextlib.suppress(Exception):  # internals that are missing: kernels compile plainly
-        from vibro_sweep.engine.simd.compiler import (
-            NoInlineCompiler,
-            PartCompiler,
-            QuickCompiler,
-            SmallCompiler,
-            WholeCompiler,
-        )
+        from vibro_sweep.engine.simd.compiler import NoInlineCompiler, PartCompiler, SmallCompiler, WholeCompiler
 
 
 @property
@@ -104,12 +98,8 @@ class exported:  # noqa: N801  # a decorator
 
     def __init__(self, function):
         functools.update_wrapper(self, function)
-        self._part, self._whole = jit(function), _compiled(function, self._compiler())
+        self._part, self._whole = jit(function), _compiled(function, WholeCompiler)
         self._whole._cache = cache_of(function)
-
-    @staticmethod
-    def _compiler():
-        return WholeCompiler
 
     def __call__(self, *args):
         return self._whole(*args)
@@ -122,14 +112,6 @@ class exported:  # noqa: N801  # a decorator
     @property
     def _numba_type_(self):  # what other kernels see of it
         return self._part._numba_type_
-
-
-class exported_quickly(exported):  # noqa: N801
-    """`exported` for a kernel with hundreds of parts, of which LLVM's first level makes code that is as fast."""
-
-    @staticmethod
-    def _compiler():
-        return QuickCompiler
 
 
 def _compiled(function, compiler, forceinline=False, **options):
