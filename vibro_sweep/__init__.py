@@ -4,7 +4,7 @@ At a prompt
     System, Oscillator, Contact, grazing, quiet, simulate, lyapunov, discontinuity_map
 Sweeps
     sweep (from Python), load_scene, estimate and run (from YAML to an HDF5 file), open (that file as an
-    xarray.Dataset), plot, explore (a page on which the diagram follows sliders)
+    xarray.Dataset), plot, explore (a page on which the diagram follows sliders), page (the same as one HTML file)
 Periodic orbits
     periodic_orbit, continue_orbit, switch, follow_branches, bifurcation_curve, born_at_grazing, sticking_onset
     windows (of a sweep), load (what the results' `.save` wrote)
@@ -43,6 +43,7 @@ __all__ = [
     "load_scene",
     "lyapunov",
     "open",
+    "page",
     "periodic_orbit",
     "plot",
     "quiet",
@@ -82,6 +83,7 @@ if TYPE_CHECKING:
     from vibro_sweep.plotting import PlotError
     from vibro_sweep.plotting.plot import plot
     from vibro_sweep.scene import SceneError, load_scene
+    from vibro_sweep.standalone.page_file import page
 else:
     _HOME = {
         "Contact": "oscillator.contact_element",
@@ -105,6 +107,7 @@ else:
         "load_scene": "scene",
         "lyapunov": "analysis.single.orbit",
         "open": "driver.any_file",
+        "page": "standalone.page_file",
         "periodic_orbit": "analysis.periodic.finding",
         "plot": "plotting.plot",
         "quiet": "oscillator.quiet",

@@ -143,7 +143,7 @@ def test_the_compiler_halts_with_its_thread():
     def compiled():
         halting.heed(np.ones(1, np.int64))
         try:
-            jit._compiled(double, jit.WholeCompiler)(1.0)
+            jit.kernel_of(double, jit.WholeCompiler)(1.0)
         except KeyboardInterrupt:
             came.append(True)
 
@@ -151,7 +151,7 @@ def test_the_compiler_halts_with_its_thread():
     thread.start()
     thread.join()
     assert came
-    assert jit._compiled(double, jit.WholeCompiler)(1.0) == 2.0
+    assert jit.kernel_of(double, jit.WholeCompiler)(1.0) == 2.0
 
 
 @pytest.mark.skipif(not jit.AS_ONE, reason="numba compiles as it does by itself")
@@ -163,12 +163,12 @@ def test_garbage_of_others_is_still_found(monkeypatch):
 
     monkeypatch.setattr(simd, "OWN_PROCESS", False)
     gc.unfreeze()
-    assert jit._compiled(double, jit.WholeCompiler)(1.0) == 2.0
+    assert jit.kernel_of(double, jit.WholeCompiler)(1.0) == 2.0
     assert gc.get_freeze_count() == 0 and gc.isenabled()
     gc.freeze()
     try:
         many = gc.get_freeze_count()
-        assert jit._compiled(lambda x: x + 1.0, jit.WholeCompiler)(1.0) == 2.0
+        assert jit.kernel_of(lambda x: x + 1.0, jit.WholeCompiler)(1.0) == 2.0
         assert 0 < gc.get_freeze_count() <= many
     finally:
         gc.unfreeze()

@@ -65,7 +65,7 @@ def test_a_compilation_within_another_one_leaves_it_lean():
 
 @known
 def test_a_small_kernel_with_all_that_large_ones_use():
-    assert small_kernel.works(jit._compiled(small_kernel.kernel, jit.WholeCompiler))
+    assert small_kernel.works(jit.kernel_of(small_kernel.kernel, jit.WholeCompiler))
 
 
 @pytest.mark.slow
@@ -113,7 +113,7 @@ def test_values_that_are_kept_out_of_memory_are_those_of_python():
     dtype = np.dtype([("rows", float, (2, 3)), ("total", float)])
     one, other = (np.zeros(3, dtype).view(np.recarray) for _ in range(2))
     one.rows[:] = other.rows[:] = np.arange(18).reshape(3, 2, 3) / 4
-    compiled = jit._compiled(wander, jit.WholeCompiler)(one, 20)
+    compiled = jit.kernel_of(wander, jit.WholeCompiler)(one, 20)
     assert compiled == wander(other, 20)
     assert one.tobytes() == other.tobytes()
 
@@ -130,6 +130,6 @@ def test_names_of_kernels_do_not_hold_all_that_their_arguments_hold():
 
     others = [(f"a_number_that_is_not_needed_{i}", float) for i in range(99)]
     dtype = np.dtype([("width", float), ("height", float), *others])
-    kernel = jit._compiled(area, jit.WholeCompiler)
+    kernel = jit.kernel_of(area, jit.WholeCompiler)
     kernel(Sides(np.zeros(1, dtype)))
     assert max(map(len, re.findall(r"_ZN\w+", kernel.inspect_llvm(kernel.signatures[0])))) < 300

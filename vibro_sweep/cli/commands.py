@@ -397,6 +397,37 @@ def explore_command(
     explore(file, port, not no_browser)
 
 
+@app.command("page")
+def page_command(
+    scene_file: Annotated[
+        Path,
+        typer.Argument(metavar="SCENE.yaml | FILE.h5", exists=True, dir_okay=False, help="A sweep, or its results."),
+    ],
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "-o", "--output", metavar="FILE.html", help="By default the name of the scene, ending with .html."
+        ),
+    ] = None,
+    overwrite: Overwrite = False,
+    quiet: Quiet = False,
+):
+    """Write a diagram as one HTML file, which computes where it is opened: no program is needed there.
+
+    The first page of a kind of machine takes half a minute to make, and the package ziglang.
+    """
+    from vibro_sweep.live.presets import scene_to_explore
+    from vibro_sweep.standalone.page_file import check_output, write_page
+
+    path = scene_file.with_suffix(".html") if output is None else output
+    all_is_imported()
+    with input_errors(ValueError, OSError, ImportError), messages(quiet):
+        check_output(path, overwrite)
+        write_page(scene_to_explore(scene_file), path, overwrite)
+    if not quiet:
+        say(str(path))
+
+
 def _draw(file: Path, output: Path | None, kind: str | None, overwrite: bool, quiet: bool, **options):
     from vibro_sweep.files.file_errors import StoreError
     from vibro_sweep.plotting import PlotError, write_pictures

@@ -1,19 +1,14 @@
 """`vs.explore`: the page of a sweep, served by a thread of this process and shown in a notebook."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vibro_sweep.checks.arguments import checked_interval, checked_word, names_its_arguments
-from vibro_sweep.checks.errors import ArgumentError, ArgumentTypeError
-from vibro_sweep.checks.file_names import checked_path
-from vibro_sweep.checks.refusals import not_allowed
+from vibro_sweep.checks.arguments import names_its_arguments
 from vibro_sweep.live.extra import needed
-from vibro_sweep.live.presets import described_sweep, scene_of_results, scene_to_explore
-from vibro_sweep.live.views import COLUMNS, span
+from vibro_sweep.live.shown_scene import shown_scene
 from vibro_sweep.oscillator.oscillator import Oscillator
-from vibro_sweep.scene import Scene, scene_of
-from vibro_sweep.scene.written import changed
+from vibro_sweep.scene import Scene
 
 if TYPE_CHECKING:
     import xarray
@@ -83,32 +78,6 @@ def explore(
     http://127.0.0.1:...
     >>> page.close()
     """
-    if isinstance(system, Oscillator):
-        scene = _swept(system, "b" if parameter is None else parameter, bounds)
-    else:
-        scene = _of_a_sweep(system)
-        for name, value in (("parameter", parameter), ("bounds", bounds)):
-            if value is not None:
-                raise ArgumentError(not_allowed(name, value, "left out: what is given for system is swept already"))
-    page = LivePage(scene)
+    page = LivePage(shown_scene(system, parameter, bounds, "explore"))
     print(page.url)
     return page
-
-
-def _swept(system: Oscillator, parameter: str, bounds: Sequence[float] | None) -> Scene:
-    checked_word("parameter", parameter, tuple(system.described))
-    value = float(getattr(system, parameter))
-    lo, hi = span(value) if bounds is None else checked_interval("bounds", bounds, value)
-    sweep = {parameter: {"start": lo, "stop": hi, "num": COLUMNS}}
-    return scene_of(changed({}, {"system": system, "sweep": sweep, "transient": 1000, "record": 200}), "explore")
-
-
-def _of_a_sweep(system: object) -> Scene:
-    if isinstance(system, Scene):
-        return described_sweep(system, "the scene")
-    if isinstance(system, (str, Path)):
-        return scene_to_explore(checked_path("system", system))
-    attributes = getattr(system, "attrs", None)
-    if isinstance(attributes, Mapping) and attributes:
-        return scene_of_results(attributes, "the Dataset")
-    raise ArgumentTypeError(not_allowed("system", system, "a System, an Oscillator, a scene, a sweep or its file"))

@@ -40,7 +40,7 @@ from vibro_sweep.engine.continuation.reflections import take_apart, take_up
 from vibro_sweep.engine.continuation.residual import follow
 from vibro_sweep.engine.continuation.workspace import FIRST, SECOND, TEST
 from vibro_sweep.engine.impulses.pairs import coarse, exchanged
-from vibro_sweep.engine.simd.jit import exported, jit
+from vibro_sweep.engine.simd.jit import exported_quickly, jit
 
 FULL, EVENT, CLOSED, FAILED, FAR, LEFT, CHATTER, TOUCH = range(8)
 # why a call ends; FAR: beyond the reach of the plane, LEFT: perhaps out of bounds, CHATTER: more or fewer impacts of a
@@ -200,7 +200,7 @@ MOVE, ASSEMBLE, CORRECT, EXAMINE, NEAR, SOLVE, STEPS, STATES, FOLLOW, TAKE_APART
 CLOSE, CONVERGE, CERTIFY = range(11, 14)  # of an orbit alone
 
 
-@exported
+@exported_quickly
 def at(task, planes, c, path, place, row, b):
     """One kernel for Python, since each is compiled with all that it calls; 0 or NaN where something is singular.
 

@@ -20,7 +20,7 @@ from itertools import pairwise
 import numpy as np
 
 from vibro_sweep.engine.impulses.flights import flight_matrix
-from vibro_sweep.engine.simd.jit import exported, jit
+from vibro_sweep.engine.simd.jit import exported_quickly, jit
 
 PASSES = 40
 STRETCH = 4.0  # logarithm: so far directions may be stretched against each other before they are factorised
@@ -126,7 +126,7 @@ def flight_pieces(spread, length):
     return 1 + int(length * spread / STRETCH)
 
 
-@exported
+@exported_quickly
 def multiply(f, contacts, u, P, motion, product, columns, couplings, order, factors, work, room):
     """The product of all factors as `columns` times `product`, both (n, n), in the last basis of the iteration.
 

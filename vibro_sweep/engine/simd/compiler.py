@@ -93,6 +93,8 @@ class _Small(_Marked):
 class _Whole(JITCodeLibrary):
     """An exported kernel, with all parts that it reaches."""
 
+    level = 2  # of LLVM's passes
+
     def add_linking_library(self, library):
         if library not in self._linking_libraries:
             super().add_linking_library(library)
@@ -108,8 +110,9 @@ class _Whole(JITCodeLibrary):
             raise LinkError(f"{self.name} refers to {', '.join(lost)}")
 
     def _optimize(self):
-        """Once, at LLVM's first level and without its vectorisers: kernels are vectors already, and as fast so."""
-        passes, builder = self._codegen._module_pass_manager(opt=1, loop_vectorize=False, slp_vectorize=False)
+        """Once, and without LLVM's vectorisers: kernels are vectors already."""
+        options = {"opt": self.level, "loop_vectorize": False, "slp_vectorize": False}
+        passes, builder = self._codegen._module_pass_manager(**options)
         passes.run(self._final_module, builder)
 
     def _get_module_for_linking(self):
@@ -129,6 +132,33 @@ class _Whole(JITCodeLibrary):
         finally:
             set_option("vibro_sweep", "-align-loops=0")
             set_option("vibro_sweep", "-align-all-functions=0")
+
+
+class _Quick(_Whole):
+    """An exported kernel of hundreds of parts: with fewer passes that of all continuation is as fast, and a first orbit
+    waits an eighth less for it."""
+
+    level = 1
+
+
+class CapturedTextError(Exception):
+    """A kernel with all parts that it reaches, as LLVM's text (portable.py)."""
+
+    def __init__(self, text: str):
+        super().__init__("a kernel as text")
+        self.text = text
+
+
+class _AsText(_Whole):
+    """An exported kernel that becomes text in place of machine code."""
+
+    def _optimize(self):
+        raise CapturedTextError(str(self._final_module))
+
+
+def leave_functions_as_they_are() -> None:
+    """From here on no pass computes with the sizes of this machine's pointers before a kernel is linked."""
+    _Part._optimize_functions = _Whole._optimize_functions = lambda self, ll_module: None
 
 
 def _keep_what_is_there() -> None:
@@ -218,6 +248,18 @@ class WholeCompiler(Compiler):
             if collecting:
                 _keep_what_is_there()
                 gc.enable()
+
+
+class QuickCompiler(WholeCompiler):
+    """The compiler of an exported kernel with hundreds of parts."""
+
+    library = _Quick
+
+
+class TextCompiler(WholeCompiler):
+    """The compiler of a kernel that is wanted as text: it raises `CapturedText`."""
+
+    library = _AsText
 
 
 class PartCompiler(WholeCompiler):

@@ -17,10 +17,16 @@ if config.DISABLE_JIT:
 
 TESTED = ("0.62", "0.63", "0.64", "0.65", "0.66", "0.67", "0.68")  # versions of numba with which compiler.py was tried
 IS_TESTED = ".".join(map(str, numba.version_info.short)) in TESTED
-NoInlineCompiler = PartCompiler = SmallCompiler = WholeCompiler = None
+NoInlineCompiler = PartCompiler = QuickCompiler = SmallCompiler = WholeCompiler = None
 if IS_TESTED:
     with contextlib.suppress(Exception):  # internals that are missing: kernels compile plainly
-        from vibro_sweep.engine.simd.compiler import NoInlineCompiler, PartCompiler, SmallCompiler, WholeCompiler
+        from vibro_sweep.engine.simd.compiler import (
+            NoInlineCompiler,
+            PartCompiler,
+            QuickCompiler,
+            SmallCompiler,
+            WholeCompiler,
+        )
 
 
 @property
@@ -53,7 +59,7 @@ class _Part:
 
     def __init__(self, function, compiler, **options):
         functools.update_wrapper(self, function)
-        self._make = functools.partial(_compiled, function, compiler, no_cpython_wrapper=True, **options)
+        self._make = functools.partial(kernel_of, function, compiler, no_cpython_wrapper=True, **options)
 
     def __call__(self, *args):
         """Call the function as Python runs it; nothing is compiled."""
@@ -98,8 +104,12 @@ class exported:  # noqa: N801  # a decorator
 
     def __init__(self, function):
         functools.update_wrapper(self, function)
-        self._part, self._whole = jit(function), _compiled(function, WholeCompiler)
+        self._part, self._whole = jit(function), kernel_of(function, self._compiler())
         self._whole._cache = cache_of(function)
+
+    @staticmethod
+    def _compiler():
+        return WholeCompiler
 
     def __call__(self, *args):
         return self._whole(*args)
@@ -114,7 +124,15 @@ class exported:  # noqa: N801  # a decorator
         return self._part._numba_type_
 
 
-def _compiled(function, compiler, forceinline=False, **options):
+class exported_quickly(exported):  # noqa: N801
+    """`exported` for a kernel with hundreds of parts, of which LLVM's first level makes code that is as fast."""
+
+    @staticmethod
+    def _compiler():
+        return QuickCompiler
+
+
+def kernel_of(function, compiler, forceinline=False, **options):
     """`contract` alone is allowed of fastmath: it fuses multiply-adds and keeps every NaN check.
 
     Kernels allocate nothing, and so are compiled without numba's reference counts: they took a third of the time, and

@@ -4,6 +4,9 @@ const TYPES = {
   float64: Float64Array, float32: Float32Array, int32: Int32Array, uint32: Uint32Array, int8: Int8Array, uint8: Uint8Array,
 };
 export const TAKEN_OVER = 4000; // code with which the socket is closed when another page has come
+export const EXPLAINS = true; // it says why a window ends
+export const SHARING = "Copied. The link has no token: who opens it adds the ?token=... of a running program before the #.";
+export const WAITING = "Computing. The first use of a kind of oscillator compiles its kernels, once: that takes up to a minute.";
 const WAITS = [200, 500, 1000, 2000, 4000]; // ms before it tries again
 
 export class Link {

@@ -4,7 +4,7 @@ import { short } from "./axes.js";
 import { Controls } from "./controls.js";
 import { DiagramData } from "./diagram_data.js";
 import { Drawing } from "./drawing.js";
-import { Link, TAKEN_OVER } from "./link.js";
+import { EXPLAINS, Link, TAKEN_OVER, WAITING } from "./link.js";
 import { OrbitPanel } from "./orbit_panel.js";
 import { copyLink, keep } from "./saving.js";
 import { requestOf, viewOf } from "./scene.js";
@@ -17,7 +17,6 @@ const $ = (id) => document.getElementById(id);
 const root = document.documentElement;
 const LATE = 120; // ms without an answer, after which what is shown is pale: it does not flicker behind a slider
 const LONG = 1500; // ms without an answer, after which the page says what may take so long
-const COMPILING = "Computing. The first use of a kind of oscillator compiles its kernels, once: that takes up to a minute.";
 
 const state = new ViewState();
 const drawing = new Drawing($("diagram"));
@@ -92,6 +91,8 @@ function fill() {
   options($("height"), model.heights.map(([name, label]) => [name, titled(label, model.units[name])]), view.y);
   $("dynamics").value = view.map.dynamics ?? "flow";
   $("motion").hidden = !model.mapping;
+  $("presets").parentElement.hidden = !model.presets.length;
+  $("why").hidden = !EXPLAINS;
   $("start").value = view.start.follow ?? (view.start.random ? "random" : "state");
   controls.build(model.numbers, view.axis);
   fields();
@@ -134,7 +135,7 @@ function request() {
 function computing() {
   set("computing");
   clearTimeout(timer);
-  timer = setTimeout(() => say(COMPILING), LONG);
+  timer = setTimeout(() => say(WAITING), LONG);
   for (const id of ["status", "under"]) $(id).classList.add("stale");
   lateTimer ??= setTimeout(() => paleFrom(true), LATE);
 }
@@ -326,7 +327,7 @@ function underPointer({ column, start }) {
 
 function soon() {
   clearTimeout(clickTimer);
-  clickTimer = setTimeout(() => say(COMPILING), LONG);
+  clickTimer = setTimeout(() => say(WAITING), LONG);
 }
 
 // the column of the final picture in which the orbit is, from whose end it goes on
@@ -389,7 +390,7 @@ const actions = {
     if (data?.axis) actions.choose(data.axis[Math.max(0, Math.min(data.columns - 1, column + by))]);
   },
   why() {
-    if (line === null) return;
+    if (line === null || !EXPLAINS) return;
     say("Following the periodic orbit of this window");
     why = { reason: "its periodic orbit is being followed", value: line };
     showWhy();

@@ -1,8 +1,10 @@
 // What the browser keeps: the scene and the picture as files, the link in the clipboard.
 
+import { SHARING } from "./link.js";
+
 export async function copyLink(state) {
-  await navigator.clipboard.writeText(location.origin + location.pathname + state.fragment());
-  return "Copied. The link has no token: who opens it adds the ?token=... of a running program before the #.";
+  await navigator.clipboard.writeText(location.href.split(/[?#]/)[0] + state.fragment());
+  return SHARING;
 }
 
 export function keep(content, name) {
