@@ -10,19 +10,13 @@ import gc
 
 import numba
 from llvmlite.binding import Linkage, parse_assembly, set_option
-from llvmlite.binding.newpassmanagers import create_new_function_pass_manager
 from numba.core.codegen import CPUCodegen, JITCodeLibrary
 from numba.core.compiler import Compiler, Flags
 
 from vibro_sweep.engine import simd
 from vibro_sweep.engine.halting import heard
 
-NEEDED = {
-    JITCodeLibrary: "_optimize_functions",
-    CPUCodegen: "_module_pass_manager",
-    Flags(): "_values",
-    create_new_function_pass_manager(): "add_sroa_pass",
-}
+NEEDED = {JITCodeLibrary: "_optimize_functions", CPUCodegen: "_module_pass_manager", Flags(): "_values"}
 if not all(hasattr(where, name) for where, name in NEEDED.items()):
     raise ImportError(f"numba {numba.__version__} lacks internals that compiler.py needs")
 
@@ -48,12 +42,10 @@ class _Part(JITCodeLibrary):
     """A kernel that only kernels call: code to be linked, and not yet optimised."""
 
     def _optimize_functions(self, ll_module):
-        """Take variables out of memory, so that there is less to link; all else is done once, with the whole kernel."""
         ll_module.data_layout = self._codegen._data_layout
-        passes, builder = create_new_function_pass_manager(), self._codegen._pass_builder(opt=1)
-        passes.add_sroa_pass()
         for function in ll_module.functions:
             if not function.is_declaration:
+                passes, builder = self._codegen._function_pass_manager(opt=1)
                 passes.run(function, builder)
 
     def finalize(self):
