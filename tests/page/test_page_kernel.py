@@ -115,6 +115,14 @@ def kind_of_system(system):
 
 
 @pytest.mark.slow
+def test_a_module_needs_nothing_but_its_memory():
+    """No Python, no allocation, no function of a browser: sin, cos and four others are linked in."""
+    wasmtime = pytest.importorskip("wasmtime")
+    module = wasmtime.Module(wasmtime.Engine(), module_of(kind_of_system(PAPER)))
+    assert [(one.module, one.name) for one in module.imports] == [("env", "memory")]
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("system, low, high", [(PAPER, 4.2, 7), (SOFT, 0.3, 1.2)])
 def test_the_module_has_the_bits_of_native_code(system, low, high, tmp_path):
     """Of code that does not fuse multiply-adds and has the same sin, cos, exp, log, expm1 and hypot: all results."""

@@ -32,6 +32,7 @@ export class Link {
   hire() {
     const worker = new Worker(WORKER), hired = { worker, task: null, ready: false };
     worker.onmessage = ({ data }) => this.done(hired, data);
+    worker.onerror = ({ message }) => this.done(hired, { error: message });
     this.module.then((module) => {
       worker.postMessage({ module, layout: this.page.layout });
       hired.ready = true;
