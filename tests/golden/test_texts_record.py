@@ -13,7 +13,7 @@ def test_help(name):
 
 
 def test_each_command_has_a_record():
-    assert [*RECORDS] == texts.commands() and len(RECORDS) == 12
+    assert [*RECORDS] == texts.commands() and len(RECORDS) == 13
 
 
 CHANGES = [
