@@ -33,7 +33,7 @@ SLOW = 20  # times as many other draws as of functions that compute for longer
 COMPUTING = ("windows", "plot", "follow_branches", "bifurcation_curve", "BifurcationCurve.plot", "continue_orbit")
 COMPUTING += ("estimate", "Branch.plot", "Branch.save", "BifurcationCurve.save", "load")
 COMPUTING += ("Orbit.plot", "PeriodicOrbit.plot", "switch", "sticking_onset", "sweep", "run", "born_at_grazing", "open")
-COMPUTING += ("Orbit.animate", "explore")
+COMPUTING += ("Orbit.animate", "explore", "page")
 
 
 @dataclass(frozen=True)
@@ -245,6 +245,13 @@ def calls(made: dict[str, Any]) -> dict[str, Call]:
             each("system", SYSTEM, made["Oscillator"])
             | {"parameter": [{"parameter": None}, {"parameter": "b"}, {"parameter": np.str_("omega"), "bounds": None}]}
             | each("bounds", None, (6.5, 6.7), np.array([6.5, 6.7])),
+        ),
+        "page": Call(
+            vs.page,
+            each("system", SYSTEM)
+            | {"parameter": [{"parameter": None}, {"parameter": "b"}, {"parameter": np.str_("omega"), "bounds": None}]}
+            | each("bounds", None, (6.5, 6.7), np.array([6.5, 6.7])) | each("output", "p.html", Path("p.html"))
+            | each("overwrite", True, np.True_),
         ),
         "run": Call(
             vs.run,
