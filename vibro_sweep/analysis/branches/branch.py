@@ -8,6 +8,7 @@ the end of a branch is not a motion any more.
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -207,10 +208,13 @@ def continue_orbit(
     return Branch(parameter, special, begins, ends, False, start, down.frame, rows, None, contacts)
 
 
+MOST_WORDS = 100  # that are read of `observe`, which may have no end
+
+
 def checked_observe(observe: Any, q: Linear) -> tuple[str, ...]:
     """The words of `observe`. Raises ValueError."""
     try:
-        words = None if isinstance(observe, (str, bytes, dict)) else tuple(observe)
+        words = None if isinstance(observe, (str, bytes, dict)) else tuple(islice(observe, MOST_WORDS))
     except TypeError:  # nothing to go through
         words = None
     if words is None or any(not isinstance(word, str) or word not in ALONG_BRANCHES for word in words):
