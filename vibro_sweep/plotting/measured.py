@@ -59,12 +59,14 @@ def measured(points: object) -> Measured:
     """The columns of a file's path, or of a mapping or table of columns. Raises PlotError."""
     if isinstance(points, (str, Path)):
         return _of_file(checked_path("points", points))
-    items = points.items() if isinstance(points, Mapping) or hasattr(points, "items") else None
-    if items is None:
-        raise PlotError(not_allowed("points", points, "the path of a CSV file, or columns by their names"))
+    try:
+        items = [(str(head), column) for head, column in points.items()]
+    except Exception:  # no table, or something that only looks like one
+        text = not_allowed("points", points, "the path of a CSV file, or columns by their names")
+        raise PlotError(text) from None
     columns, units = {}, {}
     for head, column in items:
-        name, unit = _name_and_unit(str(head))
+        name, unit = _name_and_unit(head)
         if name in columns:
             raise PlotError(f"points: there are two columns {cut(name)}")
         values = array_of(column if not hasattr(column, "to_numpy") else column.to_numpy(), 1)

@@ -215,7 +215,7 @@ def checked_observe(observe: Any, q: Linear) -> tuple[str, ...]:
     """The words of `observe`. Raises ValueError."""
     try:
         words = None if isinstance(observe, (str, bytes, dict)) else tuple(islice(observe, MOST_WORDS))
-    except TypeError:  # nothing to go through
+    except Exception:  # nothing to go through, or what cannot be
         words = None
     if words is None or any(not isinstance(word, str) or word not in ALONG_BRANCHES for word in words):
         raise ArgumentError(not_allowed("observe", observe, f"[] or {list(ALONG_BRANCHES)}"))
