@@ -167,6 +167,17 @@ def test_a_slider_a_start_and_a_click(browser, tmp_path):
     tab.close()
 
 
+@pytest.mark.slow
+def test_what_a_page_cannot_set_up_is_said(browser, tmp_path):
+    """With both stops on one side of 0 a mass at rest is held by one of them: no orbit is shown in its place."""
+    path = vs.page(PAPER.replace(offset=8.0), tmp_path / "aside.html", bounds=(4, 6))
+    tab, errors = opened(browser, path)
+    kept = tab.evaluate("window.kept")
+    assert all(status == 100 for part in kept for status in part["status"]) and not errors
+    assert "1000 orbits: such an oscillator cannot be set up" in tab.inner_text("#status")
+    tab.close()
+
+
 def test_what_is_no_page_is_refused_in_a_sentence(tmp_path):
     with pytest.raises(ValueError, match="ends with"):
         vs.page(PAPER, tmp_path / "page.pdf")

@@ -40,6 +40,12 @@ function setUp(kernel, each, plan) {
     put();
   }
   const known = new Uint8Array(kernel.memory.buffer, kernel.place.known.at, m).slice();
+  const { at } = kernel.place.points, { size, cells: [cells] } = layout.point;
+  machines.forEach((numbers, i) => { // rest is held by a stop where 0 is behind it, and states are counted from elsewhere
+    if (numbers[STOPS] <= 0 && numbers[STOPS + 1] >= 0) return;
+    kernel.view.setBigInt64(at + i * size + cells, 0n, true);
+    known[i] = 0;
+  });
   return { known, rate, machines };
 }
 
