@@ -18,7 +18,7 @@ from vibro_sweep.oscillator.contact_laws import STOP_NUMBERS
 from vibro_sweep.oscillator.models import DEFAULT, MODELS
 from vibro_sweep.oscillator.models.two_mass import PARAMETERS
 from vibro_sweep.oscillator.wording import sentence
-from vibro_sweep.plotting import KINDS
+from vibro_sweep.plotting.plot import KINDS
 from vibro_sweep.scene import json_schema
 from vibro_sweep.tables.bifurcations import CODIMENSION_TWO, CURVES, TYPES, WAYS, Bifurcation
 from vibro_sweep.tables.coordinates import INITIAL

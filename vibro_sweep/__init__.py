@@ -80,7 +80,7 @@ if TYPE_CHECKING:
     from vibro_sweep.oscillator.grazing import grazing
     from vibro_sweep.oscillator.oscillator import Oscillator, System
     from vibro_sweep.oscillator.quiet import quiet
-    from vibro_sweep.plotting import PlotError
+    from vibro_sweep.plotting.picture_files import PlotError
     from vibro_sweep.plotting.plot import plot
     from vibro_sweep.scene import SceneError, load_scene
     from vibro_sweep.standalone.page_file import page
@@ -89,7 +89,7 @@ else:
         "Contact": "oscillator.contact_element",
         "Oscillator": "oscillator.oscillator",
         "ParameterError": "checks.refusals",
-        "PlotError": "plotting",
+        "PlotError": "plotting.picture_files",
         "RunError": "driver.compute",
         "SceneError": "scene",
         "StoreError": "files.file_errors",

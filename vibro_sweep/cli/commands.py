@@ -222,7 +222,7 @@ def plot_command(
     for name, text in (("width", width), ("dpi", dpi)):
         options[name] = text and number_in(f"--{name}", text)
     options |= {"windows": windows, "over": over, "relative": relative, "units": units, "points": points}
-    from vibro_sweep.plotting import default_name
+    from vibro_sweep.plotting.picture_files import default_name
 
     if output is not None and len(files) > 1:
         raise InputError("--output names one picture; leave it out for several files: each is drawn into FILE.png")
@@ -430,7 +430,8 @@ def page_command(
 
 def _draw(file: Path, output: Path | None, kind: str | None, overwrite: bool, quiet: bool, **options):
     from vibro_sweep.files.file_errors import StoreError
-    from vibro_sweep.plotting import PlotError, write_pictures
+    from vibro_sweep.plotting.picture_files import PlotError
+    from vibro_sweep.plotting.plot import write_pictures
 
     all_is_imported()
     with input_errors(PlotError, StoreError), interrupt.tidied_up(), messages(quiet):

@@ -1,8 +1,9 @@
 """What commands that compute a file have in common: where it may go, how to continue it, progress, what is printed."""
 
 import shlex
+import threading
 from collections.abc import Callable, Collection, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -38,7 +39,7 @@ class Computation:
         """Drawn at the end, next to the file."""
         if not self.plot:
             return None
-        from vibro_sweep.plotting import default_name
+        from vibro_sweep.plotting.picture_files import default_name
 
         return self.output.with_name(default_name(self.output))
 
@@ -73,6 +74,8 @@ class Computation:
         from vibro_sweep.files.file_errors import StoreError
 
         all_is_imported()
+        if self.plot:
+            threading.Thread(target=_import_drawing).start()
         workers_of_a_cluster = executor_of(self.scheduler)
         with input_errors(StoreError, *errors), interrupt.tidied_up():
             to_continue = self.advice("--resume")
@@ -85,6 +88,12 @@ class Computation:
                 if error.internal:
                     raise
                 raise InputError(f"{error}. Nothing that was computed is lost; {to_continue}") from None
+
+
+def _import_drawing() -> None:
+    """Import what draws while kernels are compiled, or run: LLVM and kernels leave the interpreter free."""
+    with suppress(Exception):  # the import by the thread that draws says what is wrong
+        from vibro_sweep.plotting import plot  # noqa: F401
 
 
 def compute(computation: Computation, scene) -> bool:

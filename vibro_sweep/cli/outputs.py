@@ -20,17 +20,16 @@ def check_output(output: Path, inputs: Collection[Path], picture: Path | None, m
     try:
         check_outputs(output, mode, inputs)
     except StoreError as error:
-        from vibro_sweep.plotting import SUFFIXES
+        from vibro_sweep.plotting.picture_files import SUFFIXES
 
         if output.suffix.lower() in SUFFIXES:
             raise InputError(f"{error}; --plot draws a picture beside it") from None
         raise
     if picture:
-        from vibro_sweep.plotting import PlotError
-        from vibro_sweep.plotting import check_output as check_picture
+        from vibro_sweep.plotting import picture_files
 
-        with input_errors(PlotError):
-            check_picture(picture, mode == "overwrite", inputs)
+        with input_errors(picture_files.PlotError):
+            picture_files.check_output(picture, mode == "overwrite", inputs)
     try:
         with tempfile.TemporaryFile(dir=output.parent):
             pass

@@ -7,8 +7,23 @@ import os
 import stat
 from collections.abc import Iterator
 from pathlib import Path
+from typing import BinaryIO
 
-from vibro_sweep.files.file_errors import StoreError
+from vibro_sweep.files.file_errors import MissingError, StoreError
+
+
+def open_raw(path: Path) -> BinaryIO:
+    """A regular file, for reading; a pipe is not waited for. Raises StoreError."""
+    try:
+        descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
+    except FileNotFoundError:
+        raise MissingError(path) from None
+    except OSError as error:
+        raise StoreError(f"{path} cannot be read: {error.strerror}") from None
+    if not stat.S_ISREG(os.fstat(descriptor).st_mode):
+        os.close(descriptor)
+        raise StoreError(f"{path} is a folder, a device or a pipe; it must be a file")
+    return os.fdopen(descriptor, "rb")
 
 
 def obstacle(path: Path) -> str | None:

@@ -1,17 +1,16 @@
 """Opening a file: is it one of ours, and what does it hold? Its numbers are not looked at yet."""
 
 import json
-import os
-import stat
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any
 
 import h5py
 import numpy as np
 import xarray
 
 from vibro_sweep.checks.refusals import cut
-from vibro_sweep.files.file_errors import MissingError, StoreError
+from vibro_sweep.files.disk import open_raw
+from vibro_sweep.files.file_errors import StoreError
 from vibro_sweep.files.hdf5 import FORMAT, OLD
 from vibro_sweep.files.seal import SealError, is_sealed
 from vibro_sweep.files.verifying import end_of
@@ -19,20 +18,6 @@ from vibro_sweep.tables.file_columns import SWEEP
 
 NETCDF = "_NCProperties"  # the attribute by which a netCDF library says that it has made the file
 PART = b"\x89vibro_sweep"  # with which an interrupted run of 0.2 begins
-
-
-def open_raw(path: Path) -> BinaryIO:
-    """A regular file, for reading; a pipe is not waited for. Raises StoreError."""
-    try:
-        descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
-    except FileNotFoundError:
-        raise MissingError(path) from None
-    except OSError as error:
-        raise StoreError(f"{path} cannot be read: {error.strerror}") from None
-    if not stat.S_ISREG(os.fstat(descriptor).st_mode):
-        os.close(descriptor)
-        raise StoreError(f"{path} is a folder, a device or a pipe; it must be a file")
-    return os.fdopen(descriptor, "rb")
 
 
 def open_file(path: Path) -> xarray.Dataset:

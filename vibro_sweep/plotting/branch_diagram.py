@@ -7,10 +7,11 @@ from matplotlib.lines import Line2D
 
 from vibro_sweep.checks.refusals import shown
 from vibro_sweep.plotting import multiplier_lines, sweeps
-from vibro_sweep.plotting.drawn_sweep import DrawnSweep, PlotError
+from vibro_sweep.plotting.drawn_sweep import DrawnSweep
 from vibro_sweep.plotting.figure import Panels
 from vibro_sweep.plotting.labels import arrange, legend_below, name_beside
 from vibro_sweep.plotting.measured import draw_measured
+from vibro_sweep.plotting.picture_files import PlotError
 from vibro_sweep.plotting.plot_options import PlotOptions
 from vibro_sweep.plotting.ragged import RaggedFile, in_units_of, sweep_below
 from vibro_sweep.plotting.scales import scale_of

@@ -10,9 +10,10 @@ from vibro_sweep.files.file_errors import StoreError
 from vibro_sweep.oscillator.catalogue import OF_A_SYSTEM
 from vibro_sweep.oscillator.stops import NUMBERS, compliance_of
 from vibro_sweep.plotting.measured import draw_measured
+from vibro_sweep.plotting.picture_files import PlotError
 from vibro_sweep.plotting.plot_options import PlotOptions
 from vibro_sweep.plotting.settings import settings_of
-from vibro_sweep.plotting.source import PlotError, sweep_read
+from vibro_sweep.plotting.source import sweep_read
 from vibro_sweep.plotting.style import axis_name, equation, in_formula
 from vibro_sweep.tables.coordinates import MOST_MASSES
 from vibro_sweep.tables.exponents import CERTAIN, sign_of

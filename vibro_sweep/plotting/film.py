@@ -8,16 +8,16 @@ import numpy as np
 from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
 from matplotlib.patches import Rectangle
 
-from vibro_sweep.plotting.drawn_sweep import DrawnSweep, PlotError
+from vibro_sweep.plotting.drawn_sweep import DrawnSweep
 from vibro_sweep.plotting.figure import Panels, Picture
 from vibro_sweep.plotting.kind import picture
 from vibro_sweep.plotting.orbit_pictures import displacements, shows_trajectory
+from vibro_sweep.plotting.picture_files import PlotError
 from vibro_sweep.plotting.plot_options import PlotOptions
 from vibro_sweep.plotting.stored_motion import stored_motion
 from vibro_sweep.plotting.style import DASHES, FAINT, INK, SECTION, symbol
 from vibro_sweep.results.motion import Motion
 
-SUFFIXES = (".gif", ".mp4")
 FRAMES, RATE = 200, 20  # ten seconds
 HEIGHT = 3.8  # inches
 
@@ -37,7 +37,7 @@ class Film(Picture):
         return FuncAnimation(self, self.show, FRAMES, interval=1000 / RATE, repeat=True)
 
     def encoded(self, suffix: str) -> bytes:
-        """The film as a file of one of `SUFFIXES`. Raises PlotError where there is no ffmpeg for .mp4."""
+        """The film as a file of one of `FILMS`. Raises PlotError where there is no ffmpeg for .mp4."""
         if suffix == ".mp4" and not FFMpegWriter.isAvailable():
             raise PlotError("output: .mp4 needs ffmpeg, which is not installed; name a .gif")
         writer = PillowWriter(RATE) if suffix == ".gif" else FFMpegWriter(RATE)

@@ -12,7 +12,7 @@ from vibro_sweep.checks.file_names import checked_path, read_bytes
 from vibro_sweep.checks.meant import meant
 from vibro_sweep.checks.real import array_of
 from vibro_sweep.checks.refusals import cut, not_allowed
-from vibro_sweep.plotting.source import PlotError
+from vibro_sweep.plotting.picture_files import PlotError
 from vibro_sweep.tables.parameters import CYCLES, FREQUENCY
 from vibro_sweep.tables.units import ratio, unit_text
 

@@ -1,63 +1,30 @@
-"""Pictures as files: each carries a seal, a checksum of itself, by which an unchanged one is recognised.
-
-Such a picture is drawn anew without a question. Everything else that exists is replaced only when asked for.
-"""
+"""Pictures as files: a figure or a film is encoded in the format that its suffix names."""
 
 import contextlib
-import hashlib
 import io
 import logging
-import os
-import re
-import secrets
-import zlib
 from collections.abc import Collection, Iterator
 from pathlib import Path
 
 import matplotlib
 from matplotlib.figure import Figure
 
-from vibro_sweep.files import disk
-from vibro_sweep.files.opening import open_raw
-from vibro_sweep.plotting.drawn_sweep import PlotError
-from vibro_sweep.plotting.film import SUFFIXES as FILMS
+from vibro_sweep.plotting import picture_files
 from vibro_sweep.plotting.film import Film
+from vibro_sweep.plotting.picture_files import PlotError, check_output
 from vibro_sweep.plotting.style import STYLE
-
-SUFFIXES = (".png", ".jpg", ".svg", ".pdf", ".eps")  # FILMS have more
-MOST = 2**28  # bytes of a picture that is looked at
-
-_DIGEST = re.compile(rb"sha256:([0-9a-f]{64})")
-_END = 12  # bytes of the last chunk of a PNG file, which the seal comes before
-_BEGIN = 4  # bytes of a JPEG file before the length of its first segment, which the seal comes behind
 
 
 def save(fig: Figure, output: Path, overwrite: bool, inputs: Collection[Path]) -> Path:
-    """Write a picture. Raises PlotError for an output that exists and is not to be replaced, or cannot be written.
-
-    inputs : files from which it was drawn; none of them is replaced, by whatever name or link
-    """
-    exists = _replaceable(output, overwrite, inputs)
-    suffix = output.suffix.lower()
+    """Draw a figure and write it, as `picture_files.write` writes pictures. Raises PlotError."""
+    check_output(output, overwrite, inputs)
     with matplotlib.rc_context(STYLE):  # some settings are looked up only when the picture is written
-        picture = _encoded(fig, suffix)
-    new = output.with_name(f".vibro_sweep-{secrets.token_hex(16)}{suffix}")
-    try:
-        with open(new, "xb") as file:
-            file.write(_sealed(picture, suffix))
-        disk.publish(new, output, replaces=exists)
-    except FileExistsError:
-        raise PlotError(f"output {output}: it has just appeared; --overwrite replaces it") from None
-    except OSError as error:
-        raise PlotError(f"output {output}: cannot be written ({error.strerror or error})") from error
-    finally:
-        with contextlib.suppress(OSError):
-            new.unlink()
-    return output
+        picture = _encoded(fig, output.suffix.lower())
+    return picture_files.write(picture, output, overwrite, inputs)
 
 
 def _encoded(fig: Figure, suffix: str) -> bytes:
-    if isinstance(fig, Film) and suffix in FILMS:
+    if isinstance(fig, Film) and suffix in picture_files.FILMS:
         return fig.encoded(suffix)
     picture = io.BytesIO()
     try:
@@ -79,55 +46,3 @@ def _quiet_logger(name: str) -> Iterator[None]:
         yield
     finally:
         logger.setLevel(before)
-
-
-def check_output(output: Path, overwrite: bool, inputs: Collection[Path]) -> None:
-    """Raise PlotError where `save` would, as far as it can be told before."""
-    _replaceable(output, overwrite, inputs)
-
-
-def _replaceable(output: Path, overwrite: bool, inputs: Collection[Path]) -> bool:
-    """Whether something stands there, which may be replaced. Raises PlotError where that may not be."""
-    for source in inputs:
-        if disk.same_file(output, source):
-            raise PlotError(f"output {output}: that is {source}, which is read for it; name another file")
-    if why := disk.obstacle(output):
-        raise PlotError(f"output {output} {why}")
-    exists = os.path.lexists(output)
-    if exists and not overwrite and not unchanged(output):
-        raise PlotError(f"output {output} exists, and is not a picture that vibro-sweep drew; --overwrite replaces it")
-    return exists
-
-
-def unchanged(path: Path) -> bool:
-    """Whether this is a picture by `save`, byte for byte."""
-    with open_raw(path) as file:
-        content = file.read(MOST)
-    suffix = path.suffix.lower()
-    for digest in _DIGEST.findall(content)[-1:]:
-        before, seal, after = content.partition(_seal(digest, suffix))
-        return bool(seal) and _sealed(before + after, suffix) == content
-    return False
-
-
-def _sealed(picture: bytes, suffix: str) -> bytes:
-    """A picture with its seal, which is a comment in its format."""
-    end = len(picture) - _END if suffix == ".png" else len(picture)
-    if suffix == ".jpg":
-        end = _BEGIN + int.from_bytes(picture[_BEGIN : _BEGIN + 2])
-    seal = _seal(hashlib.sha256(picture).hexdigest().encode(), suffix)
-    return picture[:end] + seal + picture[end:]
-
-
-def _seal(digest: bytes, suffix: str) -> bytes:
-    if suffix == ".png":
-        chunk = b"tEXtvibro_sweep\0sha256:" + digest
-        return (len(chunk) - 4).to_bytes(4) + chunk + zlib.crc32(chunk).to_bytes(4)
-    if suffix == ".jpg":  # a segment with a comment
-        text = b"vibro_sweep sha256:" + digest
-        return b"\xff\xfe" + (len(text) + 2).to_bytes(2) + text
-    if suffix == ".mp4":  # a box that players skip
-        box = b"free vibro_sweep sha256:" + digest
-        return (len(box) + 4).to_bytes(4) + box
-    first, last = (b"<!--", b"-->") if suffix == ".svg" else (b"%", b"")
-    return first + b" vibro_sweep sha256:" + digest + b" " + last + b"\n"

@@ -11,10 +11,11 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
 from vibro_sweep.plotting import scales, sticking_marks, window_strip
-from vibro_sweep.plotting.drawn_sweep import DrawnSweep, PlotError
+from vibro_sweep.plotting.drawn_sweep import DrawnSweep
 from vibro_sweep.plotting.figure import Panels
 from vibro_sweep.plotting.kind import picture
 from vibro_sweep.plotting.labels import arrange, legend_below, thin_ticks
+from vibro_sweep.plotting.picture_files import PlotError
 from vibro_sweep.plotting.regions import name_regions
 from vibro_sweep.plotting.relative import axis_label, check_relative
 from vibro_sweep.plotting.scales import along_axis, in_proportion

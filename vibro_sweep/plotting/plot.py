@@ -15,11 +15,12 @@ from vibro_sweep.checks.arguments import check_type, checked_flag, names_its_arg
 from vibro_sweep.checks.errors import ArgumentTypeError
 from vibro_sweep.checks.file_names import file_to_write
 from vibro_sweep.checks.refusals import not_allowed, shown
-from vibro_sweep.plotting import branch_diagram, charts, film
-from vibro_sweep.plotting.drawn_sweep import DrawnSweep, PlotError
+from vibro_sweep.plotting import branch_diagram, charts
+from vibro_sweep.plotting.drawn_sweep import DrawnSweep
 from vibro_sweep.plotting.kind import Kind
 from vibro_sweep.plotting.measured import check_drawn
-from vibro_sweep.plotting.pictures import SUFFIXES, check_output, save
+from vibro_sweep.plotting.picture_files import FILMS, SUFFIXES, PlotError, check_output, default_name
+from vibro_sweep.plotting.pictures import save
 from vibro_sweep.plotting.plot_options import PlotOptions, data_of, is_result
 from vibro_sweep.plotting.source import name_of, readable
 from vibro_sweep.tables.file_columns import CHART
@@ -210,10 +211,10 @@ def _figures(
 def check_suffix(output: Path, kind: str | None) -> str | None:
     """The kind of picture for an output: a film where its suffix is that of one. Raises PlotError for any other."""
     suffix = output.suffix.lower()
-    if suffix in film.SUFFIXES and kind in (None, "film"):
+    if suffix in FILMS and kind in (None, "film"):
         return "film"
     if suffix not in SUFFIXES:
-        allowed = (*SUFFIXES, *(f"{ending} for a film" for ending in film.SUFFIXES))
+        allowed = (*SUFFIXES, *(f"{ending} for a film" for ending in FILMS))
         raise PlotError(f"output {output}: the suffix is the format and must be one of {', '.join(allowed)}")
     return kind
 
@@ -271,8 +272,3 @@ def _chosen(result: DrawnSweep, kind: str | None) -> list[str]:
 def _those(available: list[str], fits: Callable[[str], bool]) -> str:
     names = [name for name in available if fits(name)]
     return f"those of single points are {', '.join(names)}" if names else "there is none of single points"
-
-
-def default_name(path: Path) -> str:
-    """The default name of the picture of a file, FILE.png."""
-    return path.name.removesuffix(".part").removesuffix(".h5") + ".png"

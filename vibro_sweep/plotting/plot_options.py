@@ -18,7 +18,7 @@ from vibro_sweep.checks.real import array_of, number_of
 from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.plotting.figure import Panels, Picture, page, style_of
 from vibro_sweep.plotting.measured import Measured, measured
-from vibro_sweep.plotting.source import PlotError
+from vibro_sweep.plotting.picture_files import PlotError
 from vibro_sweep.tables.units import Display, display_of, why_no_display
 
 if TYPE_CHECKING:

@@ -10,8 +10,9 @@ from vibro_sweep.checks.refusals import cut
 from vibro_sweep.files.file_errors import StoreError
 from vibro_sweep.files.opening import open_file
 from vibro_sweep.files.reading import open_whole
+from vibro_sweep.plotting.picture_files import PlotError
 from vibro_sweep.plotting.plot_options import PlotOptions
-from vibro_sweep.plotting.source import PlotError, name_of, readable
+from vibro_sweep.plotting.source import name_of, readable
 from vibro_sweep.results.declared_units import display_in, shown_dataset
 from vibro_sweep.results.ragged_dataset import check
 from vibro_sweep.tables.bifurcations import KINDS, TYPES

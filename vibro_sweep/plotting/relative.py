@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from vibro_sweep.plotting.source import PlotError
+from vibro_sweep.plotting.picture_files import PlotError
 from vibro_sweep.plotting.style import axis_name, symbol
 
 

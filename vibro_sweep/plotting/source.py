@@ -5,33 +5,18 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vibro_sweep.checks.errors import ArgumentError, ArgumentTypeError, VibroSweepError
+from vibro_sweep.checks.errors import ArgumentError, ArgumentTypeError
 from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.files.file_errors import StoreError
 from vibro_sweep.files.opening import open_file
 from vibro_sweep.files.reading import sweep_in
+from vibro_sweep.plotting.picture_files import PlotError
 from vibro_sweep.results.sweep_dataset import Sweep
 from vibro_sweep.tables.file_columns import SWEEP
 from vibro_sweep.tables.units import AS_STORED, Display
 
 if TYPE_CHECKING:
     import xarray
-
-
-class PlotError(VibroSweepError, ValueError):
-    """A picture cannot be drawn; the message says what can.
-
-    Examples
-    --------
-    >>> import vibro_sweep as vs
-    >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
-    >>> data = vs.sweep(system, {"b": [6.4, 6.5]}, transient=100, record=50, observe=["lyapunov"])
-    >>> try:
-    ...     vs.plot(data, "history")
-    ... except vs.PlotError as error:
-    ...     print(error)
-    kind 'history': this dataset can show lyapunov (or all); history needs a trajectory
-    """
 
 
 def readable(source: "str | Path | xarray.Dataset") -> tuple["str | Path | xarray.Dataset", str | None]:

@@ -5,7 +5,8 @@ from matplotlib.collections import PolyCollection
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from vibro_sweep.plotting.drawn_sweep import DrawnSweep, PlotError
+from vibro_sweep.plotting.drawn_sweep import DrawnSweep
+from vibro_sweep.plotting.picture_files import PlotError
 from vibro_sweep.plotting.ragged import RaggedFile
 from vibro_sweep.plotting.scales import along_axis
 from vibro_sweep.plotting.style import FAINT, SPECIAL, edges, special_mark, type_size
