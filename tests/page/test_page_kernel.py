@@ -57,8 +57,22 @@ def test_formulas_are_those_of_the_model(system):
         np.testing.assert_allclose(found, np.concatenate(wanted), rtol=4e-16, atol=1e-30)
 
 
-def test_a_model_that_computes_with_more_has_no_formulas():
-    family = vs.types.Family(lambda b: PAPER.linear._replace(high=math.exp(b)), {"b": 1.0})
+@pytest.mark.parametrize(
+    "place",
+    [
+        math.exp,
+        abs,
+        lambda b: b if b > 1 else 1.0,
+        lambda b: 2 * b if b == 1 else b,
+        lambda b: b or 1.0,
+        lambda b: np.maximum(b, 1.0),
+        lambda b: {1.0: 2.0}.get(b, b),
+        lambda b: min(b, 2.0),
+    ],
+)
+def test_a_model_that_computes_with_more_has_no_formulas(place):
+    """A branch is one more: its formulas would be right of some numbers alone."""
+    family = vs.types.Family(lambda b: PAPER.linear._replace(high=place(b)), {"b": 1.0})
     assert formulas_of(SimpleNamespace(family=family, described={})) is None
 
 

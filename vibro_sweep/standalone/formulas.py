@@ -17,7 +17,7 @@ LAWS = ("k_low", "c_low", "p_low", "k_high", "c_high", "p_high")
 
 
 class Symbol:
-    """A formula of JavaScript."""
+    """A formula of JavaScript. It cannot be asked anything: a `build` that branches on a number has no one formula."""
 
     def __init__(self, text: str):
         self.text = text
@@ -54,6 +54,14 @@ class Symbol:
 
     def __neg__(self):
         return Symbol(f"(-{self.text})")
+
+    def __eq__(self, other):
+        raise TypeError("a formula is equal to nothing")
+
+    __hash__ = None  # so that no result of other numbers is taken for this one's
+
+    def __bool__(self):
+        raise TypeError("a formula is neither true nor false")
 
 
 def _text(value: Any) -> str:

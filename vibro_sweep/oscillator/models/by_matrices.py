@@ -24,8 +24,9 @@ def linear(
 ) -> Linear:  # fmt: skip
     """The oscillator; numbers may be complex, but not the matrices."""
     M, K = np.array(M, float), np.array(K, float)
+    constant_amplitude = isinstance(force_power, (int, float)) and force_power == 0
     with np.errstate(all="ignore"):
-        power = np.asarray(np.power(omega, force_power))[..., None] if np.any(force_power) else 1.0
+        power = 1.0 if constant_amplitude else np.asarray(np.power(omega, force_power))[..., None]
     return Linear(
         M=M,
         K=K,
