@@ -44,7 +44,12 @@ FIRST = [
 ]
 
 
-EXPECTED_SKIPS = ("no chromium here", "no network namespace here", "cannot be mounted here")  # of a machine for tests
+EXPECTED_SKIPS = (
+    "no chromium here",
+    "no firefox here",
+    "no network namespace here",
+    "cannot be mounted here",
+)  # of a machine for tests
 
 
 class KernelLog(logging.Handler):

@@ -1,19 +1,17 @@
 """The site: it builds without a warning, every link leads somewhere, and its pages are whole in a browser."""
 
-import functools
-import http.server
 import json
 import re
 import shutil
 import subprocess
 import sys
-import threading
 from html.parser import HTMLParser
 from pathlib import Path
 from urllib.parse import unquote, urlsplit
 
 import pytest
 from support import ROOT
+from support.browsers import chromium_of_playwright, served
 
 pytestmark = pytest.mark.slow
 SIZES = {"desktop": (1280, 900, "light"), "phone": (360, 740, "dark")}
@@ -106,30 +104,15 @@ def test_nothing_is_loaded_from_another_host(pages):
 
 @pytest.fixture(scope="module")
 def browser():
-    found = next(
-        (path for name in ("chromium", "chromium-browser", "google-chrome") if (path := shutil.which(name))), None
-    )
-    if found is None:
-        pytest.skip("no chromium here: apt-get install chromium")
-    api = pytest.importorskip("playwright.sync_api", reason="the browser is driven by playwright")
-    with api.sync_playwright() as playwright:
-        opened = playwright.chromium.launch(executable_path=found, args=["--no-sandbox"])
+    with chromium_of_playwright() as opened:
         yield opened
-        opened.close()
 
 
 @pytest.fixture(scope="module")
 def address(site):
     """The site served on the loopback interface."""
-
-    class Quiet(http.server.SimpleHTTPRequestHandler):
-        def log_message(self, *_):
-            pass
-
-    with http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Quiet, directory=site)) as server:
-        threading.Thread(target=server.serve_forever, daemon=True).start()
-        yield f"http://127.0.0.1:{server.server_port}"
-        server.shutdown()
+    with served(site) as there:
+        yield there
 
 
 @pytest.mark.parametrize("size", SIZES)

@@ -1,8 +1,7 @@
 """A program `vibro-sweep explore`, a page of it and a browser, for the tests of this folder."""
 
-import shutil
-
 import pytest
+from support.browsers import chromium_of_playwright
 from support.explorers import answers, explorer
 
 
@@ -27,11 +26,5 @@ def view(page):
 
 @pytest.fixture(scope="module")  # its loop is not to be there in other modules, which have one of their own
 def browser():
-    found = next((path for name in ("chromium", "chromium-browser") if (path := shutil.which(name))), None)
-    if found is None:
-        pytest.skip("no chromium here: apt-get install chromium")
-    api = pytest.importorskip("playwright.sync_api", reason="the browser is driven by playwright")
-    with api.sync_playwright() as playwright:
-        opened = playwright.chromium.launch(executable_path=found, args=["--no-sandbox"])
+    with chromium_of_playwright() as opened:
         yield opened
-        opened.close()

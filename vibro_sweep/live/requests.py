@@ -11,6 +11,8 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 LONGEST = 16384  # bytes of a request
 MOST_DOTS = 4 * 10**6  # section points of a diagram
 MOST_PERIODS = 10**9  # of all orbits of a diagram
+MOST_COLUMNS = 4000
+MOST_TRANSIENT, MOST_RECORD = 10**6, 10**4  # forcing periods
 
 Name = Annotated[str, Field(max_length=40)]
 
@@ -28,14 +30,14 @@ class Axis(_Checked):
 
     start: float
     stop: float
-    num: int = Field(ge=2, le=4000)
+    num: int = Field(ge=2, le=MOST_COLUMNS)
 
 
 class Orbit(_Checked):
     """Forcing periods."""
 
-    transient: int = Field(ge=0, le=10**6)
-    record: int = Field(ge=1, le=10**4)
+    transient: int = Field(ge=0, le=MOST_TRANSIENT)
+    record: int = Field(ge=1, le=MOST_RECORD)
 
 
 class Picture(_Checked):
@@ -108,7 +110,7 @@ class OfOneOrbit(_Request):
     view: View
     value: float
     start: int = Field(default=0, ge=0, le=10**6)
-    column: int = Field(default=-1, ge=-1, le=4000)
+    column: int = Field(default=-1, ge=-1, le=MOST_COLUMNS)
 
 
 class ClickedOrbit(OfOneOrbit):

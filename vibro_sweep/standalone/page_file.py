@@ -12,6 +12,7 @@ from vibro_sweep.checks.file_names import ExistingFileError, FileError, file_to_
 from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.engine.points.any_points import kind_of
 from vibro_sweep.files.disk import obstacle, publish
+from vibro_sweep.live import requests
 from vibro_sweep.live.model_words import model_words
 from vibro_sweep.live.shown_scene import shown_scene
 from vibro_sweep.live.views import PEAKS, view_of
@@ -26,6 +27,13 @@ from vibro_sweep.standalone.single_file import html_of
 if TYPE_CHECKING:
     import xarray
 
+MOST = {
+    "columns": requests.MOST_COLUMNS,
+    "transient": requests.MOST_TRANSIENT,
+    "record": requests.MOST_RECORD,
+    "dots": requests.MOST_DOTS,
+    "periods": requests.MOST_PERIODS,
+}
 NOT_SET_UP = 100  # status of a point that a page cannot set up (parts/block.js)
 UNLIKE = "such an oscillator cannot be set up by this page; vibro-sweep computes it"
 
@@ -121,6 +129,7 @@ def _known(scene: Scene) -> dict[str, Any]:
         "leaders": {name: system.described[name].follows for name in variable if numbers[name] is None},
         "ranges": {name: _range(system, name) for name in variable},
         "release": int(system.linear.by_force),
+        "most": MOST,
     }
 
 

@@ -20,9 +20,6 @@ def html_of(formulas: list[tuple[str, int]], kind: Kind, module: bytes, page: di
     """The text of the file. page: all that the page knows of its oscillator, for JSON."""
     sources = {path.name: path.read_text() for folder in (LIVE, OWN) for path in folder.glob("*.js")}
     sources["oscillator.js"] = oscillator_of(formulas, kind)
-    worker = _script(json.dumps(bundled("worker.js", sources)))
-    script = f"const WORKER = URL.createObjectURL(new Blob([{worker}], {{ type: 'text/javascript' }}));\n"
-    packed = base64.b64encode(gzip.compress(module, 9, mtime=0)).decode()
     title = _escaped(title)
     text = (LIVE / "index.html").read_text()
     for old, new in (
@@ -34,21 +31,18 @@ def html_of(formulas: list[tuple[str, int]], kind: Kind, module: bytes, page: di
     ):
         assert old in text, old
         text = text.replace(old, new)
-    data = _script(json.dumps(page | {"layout": layout_of(kind)}, separators=(",", ":")))
-    parts = [
-        f'<script type="application/json" id="page">{data}</script>',
-        f'<script type="text/plain" id="module">{packed}</script>',
-        f"<script>{TOO_OLD}</script>",
-        f"<script>\n{script}{_script(bundled('main.js', sources))}</script>",
-    ]
-    return text.replace("</body>", "\n".join(parts) + "\n</body>")
+    data = json.dumps(page | {"layout": layout_of(kind)}, separators=(",", ":"))
+    scripts = {name: bundled(f"{name}.js", sources).encode() for name in ("main", "worker")}
+    packed = {"page": data.encode(), **scripts, "module": module}
+    parts = [f'<script type="text/plain" id="{name}">{_packed(content)}</script>' for name, content in packed.items()]
+    return text.replace("</body>", "\n".join([*parts, f"<script>{LOADER}</script>"]) + "\n</body>")
 
 
-TOO_OLD = """
-if (typeof WebAssembly !== "object" || typeof DecompressionStream === "undefined" || !Array.prototype.findLastIndex)
-  document.getElementById("status").textContent =
-    "This page needs a browser of 2023 or later: Chromium 103, Firefox 113, Safari 16.4.";
-"""
+def _packed(content: bytes) -> str:
+    return base64.b64encode(gzip.compress(content, 9, mtime=0)).decode()
+
+
+LOADER = (OWN / "loader.js").read_text()
 
 
 def oscillator_of(formulas: list[tuple[str, int]], kind: Kind) -> str:
@@ -84,11 +78,6 @@ def _as_function(name: str, text: str) -> str:
     text = EXPORT.sub("", text)
     assert not re.search(r"^(import|export)\b", text, re.M), name
     return f'modules["{name}"] = (() => {{\n{text}return {{ {", ".join(exported)} }};\n}})();\n'
-
-
-def _script(text: str) -> str:
-    """A text that may stand in a <script>."""
-    return text.replace("</", "<\\/").replace("<!--", "<\\!--")
 
 
 def _escaped(text: str) -> str:

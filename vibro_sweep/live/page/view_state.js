@@ -1,5 +1,7 @@
 // What the page shows: the view that it asks for, its vertical range, and the views before and after it.
 
+import { requestOf } from "./scene.js";
+
 const PAUSE = 400; // ms, before the address is changed: browsers allow few changes
 
 export class ViewState {
@@ -71,8 +73,13 @@ export class ViewState {
 export function fromAddress() {
   if (location.hash.length < 2) return null;
   try {
-    const found = JSON.parse(decodeURIComponent(location.hash.slice(1)));
-    return found && typeof found.view === "object" ? found : null;
+    const { view, range, home, line, start } = JSON.parse(decodeURIComponent(location.hash.slice(1)));
+    requestOf(view); // which is not made of every view
+    const rising = (low, high) => Number.isFinite(low) && Number.isFinite(high) && low < high;
+    return {
+      view, range: Array.isArray(range) && rising(...range) ? range.slice(0, 2) : null, home: rising(home?.low, home?.high) ? home : null,
+      line: Number.isFinite(line) ? line : null, start: Number.isInteger(start) && start >= 0 ? start : 0,
+    };
   } catch {
     return null;
   }

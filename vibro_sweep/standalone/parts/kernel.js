@@ -19,7 +19,7 @@ export class Kernel {
   make(sizes) {
     const key = JSON.stringify(sizes);
     if (key === this.sizes) return;
-    this.sizes = key;
+    this.sizes = null;
     this.arguments = [this.base, this.base + RETURNED / 2];
     this.place = {};
     let at = this.base + RETURNED;
@@ -43,6 +43,7 @@ export class Kernel {
     this.bytes.fill(0, this.base, at);
     const lanes = this.place["w.ensemble.orbits"];
     for (let n = 0; n < lanes.count; n++) this.view.setBigInt64(lanes.at + n * lanes.item + this.layout.lane, BigInt(n), true);
+    this.sizes = key;
   }
 
   set(name, value) {

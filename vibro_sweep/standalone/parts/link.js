@@ -2,14 +2,15 @@
 // and their answers are those of the live page.
 
 import { heightOf } from "./heights.js";
+import { refusalOf } from "./requests.js";
 
 export const TAKEN_OVER = 4000; // no other page takes over here
 export const EXPLAINS = false; // there is no continuation here, that says why a window ends
 export const SHARING = "Copied. Who opens it needs this file, at the place that the link names.";
 export const WAITING = "Computing";
 
+const OTHERWISE = "That is in the address, behind #; without it the page opens as it was made.";
 const PREVIEW = { columns: 256, transient: 300, record: 50 };
-const MOST_DOTS = 4e6, MOST_PERIODS = 1e9; // of a diagram
 const WORKERS = Math.max(1, Math.min(8, navigator.hardwareConcurrency ?? 2));
 const PIECE = 64; // columns
 const RELAXING = 300; // forcing periods
@@ -22,17 +23,17 @@ export class Link {
     this.seq = 0;
     this.waiting = []; // tasks
     this.complete = null; // of the last diagram: its view, and where its orbits have ended
-    this.page = JSON.parse(document.getElementById("page").textContent);
+    this.page = window.standalone.page; // by loader.js
     this.page.layout.release = this.page.release;
-    this.module = compiled(document.getElementById("module").textContent);
+    this.module = window.standalone.module.then((code) => WebAssembly.compile(code));
     this.workers = Array.from({ length: WORKERS }, () => this.hire());
     queueMicrotask(() => on.open());
   }
 
   hire() {
-    const worker = new Worker(WORKER), hired = { worker, task: null, ready: false };
+    const worker = new Worker(window.standalone.worker), hired = { worker, task: null, ready: false };
     worker.onmessage = ({ data }) => this.done(hired, data);
-    worker.onerror = ({ message }) => this.done(hired, { error: message });
+    worker.onerror = (error) => this.fail(error);
     this.module.then((module) => {
       worker.postMessage({ module, layout: this.page.layout });
       hired.ready = true;
@@ -85,8 +86,9 @@ export class Link {
   }
 
   ask(type, values) {
-    const seq = ++this.seq;
-    queueMicrotask(() => this[type](seq, values));
+    const seq = ++this.seq, refusal = values.view ? refusalOf(values.view, this.page) : "";
+    if (refusal) queueMicrotask(() => this.on.answer({ type: "error", of: type, seq, text: type === "open" ? `${refusal}. ${OTHERWISE}` : refusal }));
+    else queueMicrotask(() => this[type](seq, values));
     return seq;
   }
 
@@ -139,7 +141,8 @@ export class Link {
   orbit(seq, { view, value, start, column }) {
     this.drop("orbit");
     const { complete } = this, went_on = complete?.view === JSON.stringify(view) && column >= 0;
-    const one = new Diagram(this.page, view, 0, seq, [value]);
+    const one = new Diagram(this.page, view, 0, seq, [value]), failed = (text) => this.on.answer({ type: "error", of: "orbit", seq, text });
+    if (one.refusal) return failed(one.refusal);
     const task = one.orbitTask(start, went_on ? complete.diagram.endOf(column, start) : null, this.page.model.not_settled);
     this.enter(task, ({ words, arrays }) => {
       const { statuses } = this.page.model, { low, high, normal, pressed } = one.stopsAt(0);
@@ -147,7 +150,7 @@ export class Link {
         type: "orbit", seq, ...words, arrays, value, start, went_on, low, high, normal, masses: this.page.layout.masses, pressed,
         alone: Boolean(view.scene.start.follow) && !went_on, mapping: false, status: statuses[words.status],
       });
-    }, (text) => this.on.answer({ type: "error", of: "orbit", seq, text }));
+    }, failed);
     this.next();
   }
 }
@@ -169,9 +172,6 @@ class Diagram {
 
   // why it is not computed; "" where it is
   get refusal() {
-    const orbits = this.columns * this.starts, { record, transient } = this.plan;
-    if (orbits * record > MOST_DOTS) return `at most ${MOST_DOTS.toExponential(0)} section points: fewer columns, starts or recorded periods`;
-    if (orbits * (record + transient) > MOST_PERIODS) return `at most ${MOST_PERIODS.toExponential(0)} periods: fewer columns, starts or periods`;
     for (const v of [this.at(0), this.at(this.columns - 1)]) {
       for (const [name, [text, low, high, open]] of Object.entries(this.page.ranges)) {
         const value = v[name];
@@ -346,10 +346,4 @@ function mixed(x) {
   x = Math.imul(x ^ (x >>> 16), 0x21f0aaad);
   x = Math.imul(x ^ (x >>> 15), 0x735a2d97);
   return (x ^ (x >>> 15)) >>> 0;
-}
-
-async function compiled(text) {
-  const packed = Uint8Array.from(atob(text.trim()), (letter) => letter.charCodeAt(0));
-  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
-  return WebAssembly.compile(await new Response(stream).arrayBuffer());
 }
