@@ -27,8 +27,9 @@ extensions = [
     "sphinx_design",
     "sphinx_gallery.gen_gallery",
     "sphinx-mathjax-offline",  # no page needs a network
-    "docstrings",  # this one and the next are in _extensions/, and so is gallery_figures
+    "docstrings",  # this one and the next two are in _extensions/, and so is gallery_figures
     "notebooks",
+    "diagrams",
 ]
 exclude_patterns = ["gallery", "auto_gallery/**.ipynb", "auto_gallery/**.zip", "auto_gallery/**.json"]
 nitpicky = False

@@ -51,6 +51,23 @@ SCENES = {
     "one mass, compliant, up": (one(**SOFT), along("omega", 0.6, 1.4), UP),
     "one mass, compliant, one stop": (one(**SOFT, stops="right"), along("k_stop", 10, 200), {}),
     "two masses, compliant": (SOFT_PAPER, along("b", 4.2, 7), {}),
+    "gears": (
+        vs.Oscillator.named("one_mass", k=0, zeta=0.02, constant=0.5, F=1, omega=1, R=0.7, b=1, tau=0),
+        along("F", 0.9, 3),
+        RIGHT,
+    ),
+    "a ball on a table": (
+        vs.Oscillator.named(
+            "one_mass", k=0, zeta=0, constant=-1, base=True, F=1, omega=1, R=0.8, b=0, tau=0, stops="left"
+        ),
+        along("F", 0.7, 1.4),
+        {"start": {"follow": "up", "x1": 0.5, "v1": 3}} | LEFT,
+    ),
+    "a ball in a cavity": (
+        vs.Oscillator.named("ball_in_cavity", mass_ratio=0.05, zeta=0.01, F=0.1, omega=1, R=0.7, b=1),
+        along("b", 0.5, 4),
+        {"start": {"x1": 0, "v1": 0.1}},
+    ),
     "three masses": (three(R=0.6), along("b", 0.3, 1.5), {}),
     "three masses, one stop": (three(R=0.6, stops="right"), along("omega", 0.5, 0.9), {}),
     "three masses, compliant": (three(**SOFT), along("b", 0.3, 1.5), {}),

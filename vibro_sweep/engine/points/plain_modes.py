@@ -12,8 +12,7 @@ from vibro_sweep.engine.simd.jit import jit
 
 @jit
 def has_modes(q, w):
-    """Fill the modes of an oscillator. Returns whether its masses are diagonal, springs hold all, and damping is
-    classical."""
+    """Fill the modes of an oscillator. Returns whether its masses are diagonal and damping is classical."""
     n, K_size, C_size = len(q.M), 0.0, 0.0
     for i in range(n):
         if not 0.0 < q.M[i, i] < np.inf:
@@ -24,9 +23,9 @@ def has_modes(q, w):
             scale = 1.0 / (math.sqrt(q.M[i, i]) * math.sqrt(q.M[j, j]))
             w.K[i, j], w.C[i, j] = q.K[i, j] * scale, q.C[i, j] * scale
             K_size, C_size = max(K_size, abs(w.K[i, j])), max(C_size, abs(w.C[i, j]))
-    if not 0.0 < K_size < np.inf or not C_size < np.inf:
+    if not K_size < np.inf or not C_size < np.inf:
         return False
-    C_size = C_size if C_size > 0.0 else 1.0
+    K_size, C_size = K_size if K_size > 0.0 else 1.0, C_size if C_size > 0.0 else 1.0
     for i in range(n):
         for j in range(n):  # of modes with one frequency those that dampers part
             w.A[i, j] = (w.K[i, j] + w.K[j, i]) / K_size + 0.618 * (w.C[i, j] + w.C[j, i]) / C_size

@@ -1,8 +1,8 @@
 """Points of plain oscillators, one after the other in a kernel.
 
-An oscillator is plain where its mass matrix is diagonal, springs hold every mode, damping is classical, no mode is in
-resonance without damping, no rate is far from that of the force, and states are measured from 0. Its points are those
-of `any_points` but for last digits, at a tenth of the time. By its modes,
+An oscillator is plain where its mass matrix is diagonal, damping is classical, no mode is in resonance without damping,
+no rate is far from that of the force, and states are measured from 0. A mode that no spring holds is free. Points of
+plain oscillators are those of `any_points` but for last digits, at a tenth of the time. By the modes,
 
     psi_j^T M psi_k = delta_jk,    psi_j^T K psi_j = omega_j^2,    psi_j^T C psi_j = 2 eta_j            (eq. 5),
 
@@ -80,16 +80,16 @@ def set_plain_points(machines, points, known, modes, frames):
 @jit
 def set_rate(q, p, w):
     """The rates of a point. Returns whether they, and natural frequencies, are near enough to that of the force."""
-    omega, fastest, slowest, damping = q.omega, 0.0, np.inf, 0.0
+    omega, fastest, slowest, held, damping = q.omega, 0.0, np.inf, np.inf, 0.0  # slowest of all, of those that are held
     for j in range(len(w.square)):
         fastest, slowest = max(fastest, rate_of(w.square[j], w.damping[j])), min(slowest, w.square[j])
-        damping = max(damping, w.damping[j])
+        held, damping = min(held, w.square[j] if w.square[j] > 0.0 else np.inf), max(damping, w.damping[j])
     p.omega, p.tau, p.rate = omega, q.tau, fastest
     # what holds a mass takes stiffness and damping of all motion that is left from between those of the modes
     p.constrained_rate = max(fastest, rate_of(slowest, damping))
     p.rounding = 0.0
     even = fastest <= APART * omega or slowest >= UNEVEN * fastest * fastest
-    return even and fastest <= FASTEST * omega and slowest > SLOWEST_SQUARE * omega * omega
+    return even and fastest <= FASTEST * omega and held > SLOWEST_SQUARE * omega * omega
 
 
 @jit

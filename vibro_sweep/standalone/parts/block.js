@@ -34,8 +34,8 @@ function setUp(kernel, each, plan) {
   if (free.includes(true)) { // (18): the phase at which the steady gap is largest at t = 0
     machines.forEach((numbers, i) => {
       if (!free[i]) return;
-      const away = pointOf(kernel, i, "steady") - pointOf(kernel, i, "middle"), turn = pointOf(kernel, i, "steady", 1) / pointOf(kernel, i, "omega");
-      numbers[width - 1] = Math.atan2(turn, away) || 0;
+      const [away, turn] = swingOf(kernel, i);
+      numbers[width - 1] = Math.atan2(turn, away);
     });
     put();
   }
@@ -58,6 +58,9 @@ function read(kernel, array, fields, i, name, n = 0) {
 
 const pointOf = (kernel, i, name, n = 0) => read(kernel, "points", kernel.layout.point, i, name, n);
 const resultOf = (kernel, i, name, n = 0) => read(kernel, "results", kernel.layout.result, i, name, n);
+
+// the steady gap at t = 0 from its middle, and its velocity there over omega; zero where there is no steady motion
+const swingOf = (kernel, i) => [pointOf(kernel, i, "steady") - pointOf(kernel, i, "middle"), pointOf(kernel, i, "steady", 1) / pointOf(kernel, i, "omega")];
 
 // parts of the record, of which the errors of exponents follow
 const partsOf = (kernel, plan) => (plan.lyapunov ? Math.min(plan.record, kernel.layout.batches) : 0);
@@ -118,7 +121,7 @@ export function diagram(kernel, { each, starts, plan, chain, begun }) {
     status: Int8Array.from({ length: m }, (_, i) => (known[i] ? resultOf(kernel, i, "status") : NOT_SET_UP)),
     period: Int32Array.from({ length: m }, (_, i) => resultOf(kernel, i, "period")),
     lyapunov: exponents("lyapunov"), lyapunov_error: exponents("lyapunov_error"),
-    grazing: [pointOf(kernel, 0, "middle"), pointOf(kernel, 0, "swing")],
+    grazing: [pointOf(kernel, 0, "middle"), Math.hypot(...swingOf(kernel, 0))],
     begun: Number.isFinite(own[0]) ? [...own, 0, 0, pointOf(kernel, last, "tau")] : null,
   };
 }

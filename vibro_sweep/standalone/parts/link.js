@@ -305,7 +305,7 @@ class Diagram {
 
   // the grazing clearances, where the clearance is swept
   grazes({ grazing: [middle, swing], known }) {
-    if (this.axis !== "b" || !known[0]) return undefined;
+    if (this.axis !== "b" || !known[0] || !swing) return undefined;
     const offset = this.numbers.offset ?? 0, { low, high } = heightOf.stops(this.at(0));
     const both = [...(high < Infinity ? [middle + swing - offset] : []), ...(low > -Infinity ? [swing - middle + offset] : [])];
     return [...new Set(both)].sort((a, b) => a - b);
