@@ -1,5 +1,6 @@
 """The kernel of a page: its formulas are the model's, its bits those of native code, its numbers those of a sweep."""
 
+import lzma
 import math
 import subprocess
 import sys
@@ -11,8 +12,10 @@ from support.page_memory import Memory, Module, Native
 
 import vibro_sweep as vs
 from vibro_sweep.engine.points.any_points import kind_of
+from vibro_sweep.engine.records import Kind
 from vibro_sweep.oscillator.linear import MOTION, stacked
 from vibro_sweep.oscillator.own_time import in_own_time, rate_of
+from vibro_sweep.standalone import kernel_module
 from vibro_sweep.standalone.formulas import LAWS, STOPS, formulas_of
 from vibro_sweep.standalone.kernel_module import kernel_name, module_of
 
@@ -74,6 +77,18 @@ def test_a_model_that_computes_with_more_has_no_formulas(place):
     """A branch is one more: its formulas would be right of some numbers alone."""
     family = vs.types.Family(lambda b: PAPER.linear._replace(high=place(b)), {"b": 1.0})
     assert formulas_of(SimpleNamespace(family=family, described={})) is None
+
+
+def test_modules_of_a_wheel_need_no_linker(tmp_path, monkeypatch):
+    assert all(kernel_name(kernel_module.kind_named(name)) == name for name in kernel_module.SHIPPED)
+    monkeypatch.setattr(kernel_module, "FOLDER", tmp_path)
+    monkeypatch.setattr(kernel_module, "find_spec", lambda name: None)
+    monkeypatch.setattr(kernel_module.kernel_cache, "FOLDER", None)
+    (tmp_path / kernel_module.shipped_name("2c")).write_bytes(lzma.compress(b"code"))
+    (tmp_path / "page_2ck_of_another_engine.wasm.xz").write_bytes(lzma.compress(b"code"))
+    assert module_of(Kind(2, True, False)) == b"code"
+    with pytest.raises(ImportError, match=r"pip install 'vibro_sweep\[page\]'"):
+        module_of(Kind(2, True, True))
 
 
 def block(kernel, kind, systems, start) -> Memory:

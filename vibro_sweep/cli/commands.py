@@ -414,7 +414,8 @@ def page_command(
 ):
     """Write a diagram as one HTML file, which computes where it is opened: no program is needed there.
 
-    The first page of a kind of machine takes half a minute to make, and the package ziglang.
+    Where the installation has no code for its kind of machine, that takes half a minute to make, and the package
+    ziglang.
     """
     from vibro_sweep.live.presets import scene_to_explore
     from vibro_sweep.standalone.page_file import check_output, write_page

@@ -1,9 +1,11 @@
 """The page's kernel as a WebAssembly module: numba's LLVM compiles it, LLD of the package ziglang links it.
 
-Made in a process of its own (`python -m vibro_sweep.standalone.kernel_module`), and kept beside the compiled kernels.
+A published wheel has those of `SHIPPED` (tools/page_modules.py). Others are made in a process of their own
+(`python -m vibro_sweep.standalone.kernel_module`), and kept beside the compiled kernels.
 """
 
 import logging
+import lzma
 import re
 import subprocess
 import sys
@@ -19,6 +21,8 @@ from vibro_sweep.engine.simd import kernel_cache
 
 FEATURES = "+simd128,+bulk-memory,+nontrapping-fptoint,+sign-ext"  # in all browsers since March 2023
 STACK = 2**20  # bytes
+FOLDER = Path(__file__).parent / "modules"  # of a wheel
+SHIPPED = ("1c", "2c", "3c", "1ck", "2ck", "3ck")  # kinds, by `kernel_name`
 ENTRY = "run_page"
 NEEDS = "page needs the package ziglang, which links its module: pip install 'vibro_sweep[page]'"
 
@@ -27,6 +31,9 @@ _log = logging.getLogger("vibro_sweep")
 
 def module_of(kind: Kind) -> bytes:
     """The module for oscillators of this kind. Raises MissingPackageError, and MachineError where it cannot be made."""
+    shipped = FOLDER / shipped_name(kernel_name(kind))
+    if shipped.exists():
+        return lzma.decompress(shipped.read_bytes())
     folder = kernel_cache.FOLDER
     kept = None if folder is None else Path(folder, f"page_{kernel_name(kind)}.wasm")
     if kept is not None and kept.exists():
@@ -45,6 +52,11 @@ def module_of(kind: Kind) -> bytes:
         if kept is not None:
             made.replace(kept)
     return data
+
+
+def shipped_name(name: str) -> str:
+    """The file of a module in `FOLDER`; the sources of the engine are in its name, as another one has other modules."""
+    return f"page_{name}_{kernel_cache.source_hash()}.wasm.xz"
 
 
 def kernel_name(kind: Kind) -> str:

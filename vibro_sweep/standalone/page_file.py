@@ -50,8 +50,8 @@ def page(
 
     It needs no program and no server where it is opened: from a disk, an e-mail or a web site. The kernels of this
     program are in it, as WebAssembly: no impact is missed there either. Sliders, zoom, exponents and the orbit at a
-    click are those of the live page; why a window ends is not computed there. The first page of a kind of machine takes
-    half a minute to make and the extra `page`: `pip install 'vibro_sweep[page]'`.
+    click are those of the live page; why a window ends is not computed there. Where the installation has no code for
+    its kind of machine, that takes half a minute to make and the extra `page`: `pip install 'vibro_sweep[page]'`.
 
     Parameters
     ----------
@@ -110,8 +110,7 @@ def page_text(scene: Scene) -> str:
         raise ArgumentError("page shows the oscillator itself, and not its discontinuity mapping; explore shows both")
     if formulas is None:
         raise ArgumentError(f"page needs a model whose numbers follow from formulas; {system.model.name} has others")
-    kind = kind_of(stacked([system.linear]))
-    kind = kind._replace(constant=kind.constant or any(name.startswith("constant") for name in system.described))
+    kind = kind_of(stacked([system.linear]))._replace(constant=True)  # it has room for that force, which may be zero
     return html_of(formulas, kind, module_of(kind), _known(scene), scene.name)
 
 
