@@ -44,8 +44,8 @@ def _packed(content: bytes) -> str:
 
 
 CERTIFIED = (
-    "Computed here, by the kernels of vibro-sweep as WebAssembly: impacts are certified by the same bounds, and none is "
-    "missed. Last digits differ from those of its own runs, and so do chaotic columns, one by one."
+    "Computed here, by the kernels of vibro-sweep as WebAssembly: impacts are certified by the same bounds, and none "
+    "is missed. Last digits differ from those of its own runs, and so do chaotic columns, one by one."
 )
 LOADER = (OWN / "loader.js").read_text()
 
