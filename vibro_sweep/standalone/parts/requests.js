@@ -19,11 +19,10 @@ function ofSystem({ system, dynamics = "flow" }, { model, ranges }) {
   if (dynamics !== "flow") return "dynamics: this page computes the oscillator itself";
   for (const name of new Set([...Object.keys(own), ...Object.keys(system)])) {
     const value = system[name], mine = own[name];
-    if (isNumber(value)) {
-      if (!(name in ranges) && name !== "frequency") return `${name}: no number of this page's oscillator`;
-    } else if (Array.isArray(value) && value.every(isNumber)) {
-      if (mine?.length !== value.length) return `${name}: this page is of ${JSON.stringify(mine)}`;
-    } else if (!(value === undefined && isNumber(mine)) && !same(value, mine)) return `${name}: this page is of ${JSON.stringify(mine)}`;
+    if (same(value, mine) || (value === undefined && isNumber(mine))) continue; // what is left out is as the page has it
+    const list = Array.isArray(value) && value.every(isNumber) && `${name}1` in ranges && value.length === mine.length;
+    const number = isNumber(value) && (name in ranges || name === "frequency");
+    if (!list && !number) return mine === undefined ? `${name}: no number of this page's oscillator` : `${name}: this page is of ${JSON.stringify(mine)}`;
   }
   return "";
 }
