@@ -174,7 +174,7 @@ def test_ctrl_c_ends_several_files(scene_folder, capsys, monkeypatch):
         begun.append(path)
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("vibro_sweep.plotting.write_pictures", interrupted)
+    monkeypatch.setattr("vibro_sweep.plotting.plot.write_pictures", interrupted)
     assert main(["plot", "good.h5", "again.h5"]) == 130 and len(begun) == 1
 
 

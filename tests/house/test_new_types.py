@@ -62,7 +62,7 @@ special = [float(np.abs(data.x1 - other.x1).max()), seesaw.named("pendulum", **s
 PICTURE = (
     SWEEP
     + """
-import vibro_sweep.plotting
+import vibro_sweep.plotting.plot
 from matplotlib.figure import Figure
 from vibro_sweep.scene import json_schema
 data = swept(system, {"b": [2.0, 3.0, 4.0]})
@@ -70,7 +70,7 @@ figure = vs.plot(data, "periods", xlim=(2, 4), output="periods.svg")
 into = Figure().subplots()
 vs.plot(data, "periods", into)
 special = [figure.axes[0].get_xlabel(), len(figure.axes[0].lines), len(into.lines), into.get_legend() is not None]
-special += [vibro_sweep.plotting.kinds(data)[-1], "periods" in str(json_schema())]
+special += [vibro_sweep.plotting.plot.kinds(data)[-1], "periods" in str(json_schema())]
 """
 )
 PERIODS = '''"""The periods of orbits over a parameter."""
