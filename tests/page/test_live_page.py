@@ -1,7 +1,10 @@
 """The live page in a real browser: it follows a slider, zooms and comes back, shows orbits and why a window ends."""
 
+import io
+
 import numpy as np
 import pytest
+from PIL import Image
 from support import ROOT
 from support.explorers import explorer
 
@@ -9,6 +12,7 @@ import vibro_sweep as vs
 
 pytestmark = pytest.mark.slow
 MOST = 120_000  # ms, for kernels that are to be compiled
+FEW = 40  # pixels: dots on the border between two are drawn in either
 
 
 @pytest.fixture(scope="module")
@@ -36,7 +40,12 @@ def settle(tab):
 
 def colours(tab):
     """The pixels of the diagram."""
-    return tab.locator("#diagram").screenshot()
+    return np.array(Image.open(io.BytesIO(tab.locator("#diagram").screenshot())).convert("RGB"))
+
+
+def unlike(one, other):
+    """How many pixels of two diagrams differ."""
+    return int((one != other).any(-1).sum())
 
 
 def click(tab, across, down=0.5):
@@ -54,13 +63,13 @@ def test_the_diagram_follows_a_number_and_comes_back(page):
     settle(page)
     assert int(page.get_attribute("html", "data-frame")) > frame
     changed = colours(page)
-    assert changed != before
+    assert unlike(changed, before) > FEW
     page.fill("#field-R", old)
     page.press("#field-R", "Enter")
     page.wait_for_timeout(200)
     settle(page)
     page.mouse.move(0, 0)
-    assert colours(page) == before
+    assert unlike(colours(page), before) <= FEW
 
 
 def test_zoom_and_back(page):
@@ -81,7 +90,7 @@ def test_zoom_and_back(page):
     page.mouse.move(0, 0)
     assert (page.input_value("#low"), page.input_value("#high")) == ("4.2", "7")
     page.wait_for_timeout(200)
-    assert colours(page) == before
+    assert unlike(colours(page), before) <= FEW
 
 
 def test_turning_the_wheel_is_one_step_back(page):
@@ -131,7 +140,7 @@ def test_the_address_holds_the_view(page, browser, program):
     settle(other)
     other.wait_for_timeout(300)
     assert other.input_value("#field-omega") == "0.7"
-    assert colours(other) == colours(page)
+    assert unlike(colours(other), colours(page)) <= FEW
     page.locator("#status", has_text="Another tab or window shows this page now. Reload this one").wait_for()
     page.reload()
     settle(page)
@@ -149,7 +158,7 @@ def test_a_number_of_a_list(page, tmp_path):
     page.press("#field-m2", "Enter")
     page.wait_for_timeout(200)
     settle(page)
-    assert colours(page) != before and page.locator("#status.bad").count() == 0
+    assert unlike(colours(page), before) > FEW and page.locator("#status.bad").count() == 0
     page.click("#save summary")
     with page.expect_download() as download:
         page.click("#save [data-form=yaml]")
