@@ -45,35 +45,11 @@ def default_name(path: Path) -> str:
     return path.name.removesuffix(".part").removesuffix(".h5") + ".png"
 
 
-def write(picture: bytes, output: Path, overwrite: bool, inputs: Collection[Path]) -> Path:
-    """Write a picture. Raises PlotError for an output that exists and is not to be replaced, or cannot be written.
+def check_output(output: Path, overwrite: bool, inputs: Collection[Path]) -> bool:
+    """Whether something stands there, which may be replaced. Raises PlotError where that may not be.
 
-    inputs : files from which it was drawn; none of them is replaced, by whatever name or link
+    inputs : files from which it is drawn; none of them is replaced, by whatever name or link
     """
-    exists = _replaceable(output, overwrite, inputs)
-    suffix = output.suffix.lower()
-    new = output.with_name(f".vibro_sweep-{secrets.token_hex(16)}{suffix}")
-    try:
-        with open(new, "xb") as file:
-            file.write(_sealed(picture, suffix))
-        disk.publish(new, output, replaces=exists)
-    except FileExistsError:
-        raise PlotError(f"output {output}: it has just appeared; --overwrite replaces it") from None
-    except OSError as error:
-        raise PlotError(f"output {output}: cannot be written ({error.strerror or error})") from error
-    finally:
-        with contextlib.suppress(OSError):
-            new.unlink()
-    return output
-
-
-def check_output(output: Path, overwrite: bool, inputs: Collection[Path]) -> None:
-    """Raise PlotError where `write` would, as far as it can be told before."""
-    _replaceable(output, overwrite, inputs)
-
-
-def _replaceable(output: Path, overwrite: bool, inputs: Collection[Path]) -> bool:
-    """Whether something stands there, which may be replaced. Raises PlotError where that may not be."""
     for source in inputs:
         if disk.same_file(output, source):
             raise PlotError(f"output {output}: that is {source}, which is read for it; name another file")
@@ -83,6 +59,24 @@ def _replaceable(output: Path, overwrite: bool, inputs: Collection[Path]) -> boo
     if exists and not overwrite and not unchanged(output):
         raise PlotError(f"output {output} exists, and is not a picture that vibro-sweep drew; --overwrite replaces it")
     return exists
+
+
+def write(picture: bytes, output: Path, replaces: bool) -> Path:
+    """Write a picture where `check_output` has said that there is one to be replaced, or none. Raises PlotError."""
+    suffix = output.suffix.lower()
+    new = output.with_name(f".vibro_sweep-{secrets.token_hex(16)}{suffix}")
+    try:
+        with open(new, "xb") as file:
+            file.write(_sealed(picture, suffix))
+        disk.publish(new, output, replaces)
+    except FileExistsError:
+        raise PlotError(f"output {output}: it has just appeared; --overwrite replaces it") from None
+    except OSError as error:
+        raise PlotError(f"output {output}: cannot be written ({error.strerror or error})") from error
+    finally:
+        with contextlib.suppress(OSError):
+            new.unlink()
+    return output
 
 
 def unchanged(path: Path) -> bool:

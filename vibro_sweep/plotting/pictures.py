@@ -9,22 +9,24 @@ from pathlib import Path
 import matplotlib
 from matplotlib.figure import Figure
 
-from vibro_sweep.plotting import picture_files
 from vibro_sweep.plotting.film import Film
-from vibro_sweep.plotting.picture_files import PlotError, check_output
+from vibro_sweep.plotting.picture_files import FILMS, PlotError, check_output, write
 from vibro_sweep.plotting.style import STYLE
 
 
 def save(fig: Figure, output: Path, overwrite: bool, inputs: Collection[Path]) -> Path:
-    """Draw a figure and write it, as `picture_files.write` writes pictures. Raises PlotError."""
-    check_output(output, overwrite, inputs)
+    """Write a picture. Raises PlotError for an output that exists and is not to be replaced, or cannot be written.
+
+    inputs : files from which it was drawn
+    """
+    exists = check_output(output, overwrite, inputs)
     with matplotlib.rc_context(STYLE):  # some settings are looked up only when the picture is written
         picture = _encoded(fig, output.suffix.lower())
-    return picture_files.write(picture, output, overwrite, inputs)
+    return write(picture, output, exists)
 
 
 def _encoded(fig: Figure, suffix: str) -> bytes:
-    if isinstance(fig, Film) and suffix in picture_files.FILMS:
+    if isinstance(fig, Film) and suffix in FILMS:
         return fig.encoded(suffix)
     picture = io.BytesIO()
     try:
