@@ -73,9 +73,10 @@ class Computation:
         from vibro_sweep.driver.progress import progress_bar
         from vibro_sweep.files.file_errors import StoreError
 
-        all_is_imported()
         if self.plot:
             threading.Thread(target=_import_drawing).start()
+        else:
+            all_is_imported()
         workers_of_a_cluster = executor_of(self.scheduler)
         with input_errors(StoreError, *errors), interrupt.tidied_up():
             to_continue = self.advice("--resume")
@@ -94,6 +95,7 @@ def _import_drawing() -> None:
     """Import what draws while kernels are compiled, or run: LLVM and kernels leave the interpreter free."""
     with suppress(Exception):  # the import by the thread that draws says what is wrong
         from vibro_sweep.plotting import plot  # noqa: F401
+    all_is_imported()
 
 
 def compute(computation: Computation, scene) -> bool:
