@@ -10,9 +10,11 @@ from sphinx.util.docutils import SphinxDirective
 import vibro_sweep as vs
 
 FOLDER = "_diagrams"  # of the site
+LOAD = "const frame = this.querySelector('iframe'); frame.src ||= frame.dataset.address"
 FRAME = """
-<details class="diagram"><summary>Move it: this diagram, computed in your browser as you turn its numbers</summary>
-<iframe src="{address}" title="The diagram {name}, with sliders" loading="lazy"></iframe>
+<details class="diagram" ontoggle="{load}">
+<summary>Move it: this diagram, computed in your browser as you turn its numbers</summary>
+<iframe data-address="{address}" title="The diagram {name}, with sliders"></iframe>
 <a href="{address}">In a window of its own</a></details>
 """
 
@@ -37,7 +39,7 @@ class Diagram(SphinxDirective):
                 scene.write_text(text)
                 vs.page(scene, output, overwrite=True)
         address = "../" * self.env.docname.count("/") + f"{FOLDER}/{name}.html"
-        return [nodes.raw("", FRAME.format(name=name.replace("_", " "), address=address), format="html")]
+        return [nodes.raw("", FRAME.format(load=LOAD, name=name.replace("_", " "), address=address), format="html")]
 
 
 def setup(app: Sphinx) -> dict[str, bool]:

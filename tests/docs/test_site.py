@@ -121,7 +121,7 @@ def test_pages_are_whole(site, pages, browser, address, size):
     width, height, scheme = SIZES[size]
     context = browser.new_context(viewport={"width": width, "height": height}, color_scheme=scheme)
     tab, wrong = context.new_page(), []
-    tab.on("request", lambda one: one.url.startswith((address, "data:")) or wrong.append(one.url))
+    tab.on("request", lambda one: one.url.startswith((address, "data:", f"blob:{address}")) or wrong.append(one.url))
     tab.on("pageerror", lambda error: wrong.append(str(error)))
     for path in sorted(pages):
         name = path.relative_to(site).as_posix()
@@ -144,3 +144,16 @@ def test_search_finds(browser, address):
     tab.wait_for_selector("#search-results li a")
     assert tab.locator("#search-results li").count() >= 5
     tab.close()
+
+
+def test_diagrams_move_when_they_are_asked_for(browser, site, address):
+    made = [*(site / "_diagrams").glob("*.html")]
+    assert len(made) == 6 and all(path.stat().st_size < 250_000 for path in made)
+    tab = browser.new_page()
+    tab.goto(f"{address}/start/ten_minutes.html")
+    assert len(tab.frames) == 1
+    tab.click("details.diagram summary")
+    tab.frame_locator("details.diagram iframe").locator("html[data-state=final]").wait_for(state="attached")
+    words = tab.frame_locator("details.diagram iframe").locator("#status").inner_text()
+    tab.close()
+    assert words.startswith("1000 values of b")
