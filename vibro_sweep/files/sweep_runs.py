@@ -109,8 +109,9 @@ def _make(
 ) -> None:
     """The whole file with nothing computed."""
     lead = data["status"].dims
-    sums = {str(name): (lead, np.broadcast_to(np.uint32(0), data["status"].shape)) for name in data.data_vars}
-    end = {"end": ("byte", np.broadcast_to(np.uint8(0), (END_BYTES,)))}
-    checks = xarray.Dataset(sums | end, attrs={"following": " ".join(following)})
+    zeros = xarray.Variable(lead, np.broadcast_to(np.uint32(0), data["status"].shape), fastpath=True)  # without dask
+    end = xarray.Variable(("byte",), np.broadcast_to(np.uint8(0), (END_BYTES,)), fastpath=True)
+    sums = {str(name): zeros for name in data.data_vars}
+    checks = xarray.Dataset(sums | {"end": end}, attrs={"following": " ".join(following)})
     about = about_run(data.attrs, made_by, secrets.token_hex(16))
     make(path, data.assign_attrs(about), data.data_vars, checks, replaces)
