@@ -68,6 +68,11 @@ SCENES = {
         along("b", 0.5, 4),
         {"start": {"x1": 0, "v1": 0.1}},
     ),
+    "two masses, coupled by dampers": (
+        vs.Oscillator.named("chain", m=[1, 1], k=[1, 1, 1], c=[0.3, 0.05, 0.0], force=[1, 0], omega=0.9, b=0.6, R=0.7),
+        along("b", 0.3, 1.5),
+        {},
+    ),
     "three masses": (three(R=0.6), along("b", 0.3, 1.5), {}),
     "three masses, one stop": (three(R=0.6, stops="right"), along("omega", 0.5, 0.9), {}),
     "three masses, compliant": (three(**SOFT), along("b", 0.3, 1.5), {}),

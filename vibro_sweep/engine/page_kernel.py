@@ -7,7 +7,8 @@ points/plain_points.py; of others the page has no points.
 import math
 
 from vibro_sweep.engine.orbit_block import run_points
-from vibro_sweep.engine.points.plain_points import APART, set_plain_points
+from vibro_sweep.engine.points.plain_modes import UNKNOWN
+from vibro_sweep.engine.points.plain_points import APART, set_point
 from vibro_sweep.engine.simd.jit import exported, inline, jit
 from vibro_sweep.engine.tables.cells import LEAST_CELLS, LONGEST, MOST_CELLS
 from vibro_sweep.engine.tables.flight import WIDTH
@@ -41,7 +42,7 @@ def set_points(machines, stops, laws, release, known, modes, points, frames):
     """Set up points (m,) with their stops and cells."""
     for i in range(len(machines)):
         p = points[i]
-        set_plain_points(machines[i : i + 1], points[i : i + 1], known[i : i + 1], modes, frames)
+        known[i] = set_point(machines[i], p, modes[0], frames) != UNKNOWN
         known[i] = known[i] and not (p.turned and p.rate > APART * p.omega)
         p.cells = cells_of(max(p.rate, p.omega), p.omega) if known[i] else 0
         known[i] = p.cells > 0

@@ -45,7 +45,8 @@ def _packed(content: bytes) -> str:
 
 CERTIFIED = (
     "Computed here, by the kernels of vibro-sweep as WebAssembly: impacts are certified by the same bounds, and none "
-    "is missed. Last digits differ from those of its own runs, and so do chaotic columns, one by one."
+    "is missed. Last digits differ from those of its own runs, and so do chaotic columns, one by one. Where dampers "
+    "couple modes there are no exponents here."
 )
 LOADER = (OWN / "loader.js").read_text()
 

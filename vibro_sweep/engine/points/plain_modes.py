@@ -9,33 +9,55 @@ from vibro_sweep.engine.points.metric import ROUNDING
 from vibro_sweep.engine.points.symmetric import diagonalise
 from vibro_sweep.engine.simd.jit import jit
 
+UNKNOWN, COUPLED, PLAIN = range(3)
+
 
 @jit
-def has_modes(q, w):
-    """Fill the modes of an oscillator. Returns whether its masses are diagonal and damping is classical."""
+def set_modes(q, w):
+    """Fill the modes of an oscillator. Returns PLAIN, COUPLED where dampers couple modes, or UNKNOWN where masses do.
+
+    Where they are coupled, all squares and dampings are bounds: no motion is stiffer, nor damped more.
+    """
     n, K_size, C_size = len(q.M), 0.0, 0.0
     for i in range(n):
         if not 0.0 < q.M[i, i] < np.inf:
-            return False
+            return UNKNOWN
         for j in range(n):
             if i != j and q.M[i, j] != 0.0:
-                return False
+                return UNKNOWN
             scale = 1.0 / (math.sqrt(q.M[i, i]) * math.sqrt(q.M[j, j]))
             w.K[i, j], w.C[i, j] = q.K[i, j] * scale, q.C[i, j] * scale
             K_size, C_size = max(K_size, abs(w.K[i, j])), max(C_size, abs(w.C[i, j]))
     if not K_size < np.inf or not C_size < np.inf:
-        return False
+        return UNKNOWN
     K_size, C_size = K_size if K_size > 0.0 else 1.0, C_size if C_size > 0.0 else 1.0
     for i in range(n):
         for j in range(n):  # of modes with one frequency those that dampers part
             w.A[i, j] = (w.K[i, j] + w.K[j, i]) / K_size + 0.618 * (w.C[i, j] + w.C[j, i]) / C_size
     if not diagonalise(w.A, w.V):
-        return False
+        return UNKNOWN
     for i in range(n):
         for j in range(n):
             w.shape[i, j] = w.V[i, j] / math.sqrt(q.M[i, i])
     springs = are_parted(w.K, K_size, w, w.square, w.square_error)
-    return are_parted(w.C, C_size, w, w.damping, w.damping_error) and springs
+    if are_parted(w.C, C_size, w, w.damping, w.damping_error) and springs:
+        return PLAIN
+    stiffest, strongest = largest_sum(w.K), largest_sum(w.C)
+    for j in range(n):
+        w.square[j], w.damping[j] = stiffest, strongest
+    return COUPLED
+
+
+@jit
+def largest_sum(matrix):
+    """The largest sum of moduli in a row, which no eigenvalue exceeds."""
+    largest = 0.0
+    for i in range(len(matrix)):
+        total = 0.0
+        for j in range(len(matrix)):
+            total += abs(matrix[i, j])
+        largest = max(largest, total)
+    return largest
 
 
 @jit

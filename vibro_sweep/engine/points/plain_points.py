@@ -1,8 +1,8 @@
 """Points of plain oscillators, one after the other in a kernel.
 
 An oscillator is plain where its mass matrix is diagonal, damping is classical, no mode is in resonance without damping,
-no rate is far from that of the force, and states are measured from 0. A mode that no spring holds is free. Points of
-plain oscillators are those of `any_points` but for last digits, at a tenth of the time. By the modes,
+no rate is far from that of the force, and states are measured from 0. Its points are those of `any_points` but for last
+digits, at a tenth of the time. By its modes,
 
     psi_j^T M psi_k = delta_jk,    psi_j^T K psi_j = omega_j^2,    psi_j^T C psi_j = 2 eta_j            (eq. 5),
 
@@ -15,9 +15,9 @@ import math
 import numpy as np
 
 from vibro_sweep.engine.points.plain_coordinates import set_constrained, set_coordinates, set_equations
-from vibro_sweep.engine.points.plain_frame import set_frame
-from vibro_sweep.engine.points.plain_modes import has_modes
-from vibro_sweep.engine.points.plain_steady import set_steady
+from vibro_sweep.engine.points.plain_frame import leave_out_frame, set_frame
+from vibro_sweep.engine.points.plain_modes import COUPLED, PLAIN, UNKNOWN, set_modes
+from vibro_sweep.engine.points.plain_steady import set_steady, set_unconfined
 from vibro_sweep.engine.simd.jit import exported, jit
 
 APART = 8.0  # a rate over that of the force from which on tables are computed in twice the digits, where squares of
@@ -65,25 +65,41 @@ def set_plain_points(machines, points, known, modes, frames):
 
     frames : whether tangent vectors are wanted; modes (1,): scratch
     """
-    w = modes[0]
     for i in range(len(machines)):
-        q, p = machines[i], points[i]
-        known[i] = has_modes(q, w) and set_rate(q, p, w)
-        if known[i]:
-            set_coordinates(q, p)
-            set_equations(q, p, w)
-            known[i] = set_constrained(q, p, w) and set_steady(q, p, w)
-        if known[i] and frames:
-            set_frame(q, p, w)
+        known[i] = set_point(machines[i], points[i], modes[0], frames) == PLAIN
 
 
 @jit
-def set_rate(q, p, w):
-    """The rates of a point. Returns whether they, and natural frequencies, are near enough to that of the force."""
+def set_point(q, p, w, frames):
+    """Fill a point. Returns PLAIN; COUPLED, where dampers couple modes, and in resonance: such a point has no frame,
+    nor what confines motions; or UNKNOWN, where it is not filled."""
+    kind = set_modes(q, w)
+    if kind == UNKNOWN or not set_rate(q, p, w, kind):
+        return UNKNOWN
+    set_coordinates(q, p)
+    set_equations(q, p, w)
+    if not set_constrained(q, p, w):
+        return UNKNOWN
+    if kind == PLAIN and set_steady(q, p, w):
+        if frames:
+            set_frame(q, p, w)
+        return PLAIN
+    set_unconfined(p)
+    if frames:
+        leave_out_frame(p)
+    return COUPLED
+
+
+@jit
+def set_rate(q, p, w, kind):
+    """The rates of a point, of a coupled one bounds. Returns whether they, and natural frequencies, are near enough to
+    that of the force."""
     omega, fastest, slowest, held, damping = q.omega, 0.0, np.inf, np.inf, 0.0  # slowest of all, of those that are held
     for j in range(len(w.square)):
         fastest, slowest = max(fastest, rate_of(w.square[j], w.damping[j])), min(slowest, w.square[j])
         held, damping = min(held, w.square[j] if w.square[j] > 0.0 else np.inf), max(damping, w.damping[j])
+    if kind == COUPLED:  # motions may be as soft as nothing
+        fastest, slowest = max(fastest, damping), 0.0
     p.omega, p.tau, p.rate = omega, q.tau, fastest
     # what holds a mass takes stiffness and damping of all motion that is left from between those of the modes
     p.constrained_rate = max(fastest, rate_of(slowest, damping))

@@ -5,41 +5,40 @@ import math
 from vibro_sweep.engine.points.symmetric import factorise, solve
 from vibro_sweep.engine.simd.jit import jit
 
-HELD, FREE, DRIFTS, NONE_FOUND = range(4)  # kinds of steady motions
 IN_RESONANCE = 1e-10  # of omega_j^2 + omega^2: a dynamic stiffness below which it is not
-UNBALANCED = 1e-6  # of a constant force: a part on free modes from which on no state balances it
 
 
 @jit
 def set_steady(q, p, w):
-    """The steady motion, zero where a constant force on free modes leaves none; and how far from it the oscillator may
-    be and reach no stop (confinement.py). Returns whether no mode is in resonance, and springs or nothing take the
-    constant force."""
-    n, omega, sin, cos, kind = len(q.M), q.omega, math.sin(q.tau), math.cos(q.tau), kind_of_steady(q, w)
+    """How far from its steady motion the oscillator may be and reach no stop (confinement.py); not at all where springs
+    leave a mode free. Returns whether no mode is in resonance."""
+    n, omega, sin, cos = len(q.M), q.omega, math.sin(q.tau), math.cos(q.tau)
+    set_unconfined(p)
+    free = False
     for i in range(n):
-        w.rest[i], w.compliance[i] = (q.constant[i], q.normal[i]) if kind == HELD else (0.0, 0.0)
-        w.steady[0, i] = w.steady[1, i] = 0.0
+        w.rest[i], w.compliance[i], w.steady[0, i], w.steady[1, i] = q.constant[i], q.normal[i], 0.0, 0.0
+        free = free or w.square[i] == 0.0
         for j in range(n):
             w.A[i, j] = q.K[i, j]
-    if kind == NONE_FOUND or (kind == HELD and not factorise(w.A, n)):
+    if is_resonant(q, w):
         return False
-    if kind == HELD:
-        solve(w.A, n, w.rest)
-        solve(w.A, n, w.compliance)
+    if free or not factorise(w.A, n):
+        return free
+    solve(w.A, n, w.rest)
+    solve(w.A, n, w.compliance)
     for _ in range(2):  # once more for what rounding has left
         add_steady(q, w)
     for i in range(n):  # x = Re(turning e^{i omega t})
         a, b = w.steady[0, i], w.steady[1, i]
-        w.turning[0, i], w.turning[1, i] = (0.0, 0.0) if kind == DRIFTS else (a * sin + b * cos, b * sin - a * cos)
-    real = imaginary = compliance = p.middle = 0.0
+        w.turning[0, i], w.turning[1, i] = a * sin + b * cos, b * sin - a * cos
+    real = imaginary = compliance = 0.0
     for i in range(n):
         real += q.normal[i] * w.turning[0, i]
         imaginary += q.normal[i] * w.turning[1, i]
         compliance += q.normal[i] * w.compliance[i]
         p.middle += q.normal[i] * w.rest[i]
-    p.swing = math.hypot(real, imaginary) if kind == HELD else math.inf  # what is free may be anywhere
+    p.swing = math.hypot(real, imaginary)
     for i in range(n):
-        p.steady[2 * i] = p.steady[2 * i + 1] = 0.0
         for k in range(n):
             p.steady[2 * i] += p.P[i, k] * (w.turning[0, k] + w.rest[k])
             p.steady[2 * i + 1] -= p.P[i, k] * omega * w.turning[1, k]
@@ -50,30 +49,27 @@ def set_steady(q, p, w):
                 for m in range(n):
                     stiffness += p.back[k, i] * q.K[k, m] * p.back[m, j]
             p.confining[2 * i, 2 * j], p.confining[2 * i + 1, 2 * j + 1] = compliance * stiffness, compliance * mass
-            p.confining[2 * i, 2 * j + 1] = p.confining[2 * i + 1, 2 * j] = 0.0
     return True
 
 
 @jit
-def kind_of_steady(q, w):
-    """Which steady motion there is: HELD by springs; of free modes none where a constant force drives one (DRIFTS), one
-    where there is no such force (FREE); NONE_FOUND where springs take it beside free modes, and in resonance."""
-    n, free, pushed, drifts = len(q.M), False, False, False
-    for j in range(n):
-        # the force has the frequency of a mode that nothing damps, or nearly
+def set_unconfined(p):
+    """No steady motion that confines: any distance from it may reach a stop."""
+    p.middle, p.swing = 0.0, math.inf
+    for i in range(len(p.steady)):
+        p.steady[i] = 0.0
+        for j in range(len(p.steady)):
+            p.confining[i, j] = 0.0
+
+
+@jit
+def is_resonant(q, w):
+    """Whether the force has the frequency of a mode that nothing damps, or nearly."""
+    for j in range(len(w.square)):
         stiffness = math.hypot(w.square[j] - q.omega * q.omega, w.damping[j] * q.omega)
         if stiffness <= IN_RESONANCE * (w.square[j] + q.omega * q.omega):
-            return NONE_FOUND
-        free = free or w.square[j] == 0.0
-        pushed = pushed or q.constant[j] != 0.0
-        part = size = 0.0
-        for i in range(n):
-            part += w.shape[i, j] * q.constant[i]
-            size += abs(w.shape[i, j] * q.constant[i])
-        drifts = drifts or (w.square[j] == 0.0 and abs(part) > UNBALANCED * size)
-    if not free:
-        return HELD
-    return DRIFTS if drifts else NONE_FOUND if pushed else FREE
+            return True
+    return False
 
 
 @jit

@@ -2,6 +2,7 @@
 // kernel (oscillator/own_time.py), and of the user's in all that comes in and goes out.
 
 import { numbersOf, powers, STOPS } from "./oscillator.js";
+import { steadyGap } from "./steady.js";
 
 const SET_UP = 0, DIAGRAM = 1, TRAJECTORY = 2;
 const ROUND = 64; // sizes are multiples of this
@@ -14,31 +15,21 @@ function setUp(kernel, each, plan) {
   const { layout } = kernel, m = each.length, width = layout.machine, rate = 2 ** Math.round(Math.log2(each[0].omega));
   const scales = powers.map((power) => rate ** power);
   const machines = each.map((v) => numbersOf(v).map((value, n) => value / scales[n]));
-  const put = () => {
-    machines.forEach((numbers, i) => {
-      kernel.floats("machines", width, i * width).set(numbers.slice(0, width));
-      kernel.floats("stops", 4, 4 * i).set(numbers.slice(STOPS, STOPS + 4));
-      if (layout.compliant) kernel.floats("laws", 6, 6 * i).set(numbers.slice(STOPS + 4));
-    });
-    kernel.set("task", SET_UP);
-    kernel.set("plan.lyapunov", plan.lyapunov);
-    for (const name of ["machines", "known"]) kernel.shape(name, m);
-    kernel.shape("stops", m, 4);
-    if (layout.compliant) kernel.shape("laws", m, 2, 3);
-    kernel.set("release", layout.release);
-    kernel.shape("points", 1, m);
-    kernel.call();
-  };
-  put();
-  const free = each.map((v) => typeof v.tau !== "number");
-  if (free.includes(true)) { // (18): the phase at which the steady gap is largest at t = 0
-    machines.forEach((numbers, i) => {
-      if (!free[i]) return;
-      const [away, turn] = swingOf(kernel, i);
-      numbers[width - 1] = Math.atan2(turn, away);
-    });
-    put();
-  }
+  machines.forEach((numbers, i) => { // (18): the phase at which the steady gap is largest at t = 0; 0 where there is none
+    const steady = typeof each[i].tau === "number" ? null : steadyGap(numbers);
+    if (typeof each[i].tau !== "number") numbers[width - 1] = steady ? Math.atan2(-steady.imaginary, steady.real) : 0;
+    kernel.floats("machines", width, i * width).set(numbers.slice(0, width));
+    kernel.floats("stops", 4, 4 * i).set(numbers.slice(STOPS, STOPS + 4));
+    if (layout.compliant) kernel.floats("laws", 6, 6 * i).set(numbers.slice(STOPS + 4));
+  });
+  kernel.set("task", SET_UP);
+  kernel.set("plan.lyapunov", plan.lyapunov);
+  for (const name of ["machines", "known"]) kernel.shape(name, m);
+  kernel.shape("stops", m, 4);
+  if (layout.compliant) kernel.shape("laws", m, 2, 3);
+  kernel.set("release", layout.release);
+  kernel.shape("points", 1, m);
+  kernel.call();
   const known = new Uint8Array(kernel.memory.buffer, kernel.place.known.at, m).slice();
   const { at } = kernel.place.points, { size, cells: [cells] } = layout.point;
   machines.forEach((numbers, i) => { // rest is held by a stop where 0 is behind it, and states are counted from elsewhere
@@ -58,9 +49,6 @@ function read(kernel, array, fields, i, name, n = 0) {
 
 const pointOf = (kernel, i, name, n = 0) => read(kernel, "points", kernel.layout.point, i, name, n);
 const resultOf = (kernel, i, name, n = 0) => read(kernel, "results", kernel.layout.result, i, name, n);
-
-// the steady gap at t = 0 from its middle, and its velocity there over omega; zero where there is no steady motion
-const swingOf = (kernel, i) => [pointOf(kernel, i, "steady") - pointOf(kernel, i, "middle"), pointOf(kernel, i, "steady", 1) / pointOf(kernel, i, "omega")];
 
 // parts of the record, of which the errors of exponents follow
 const partsOf = (kernel, plan) => (plan.lyapunov ? Math.min(plan.record, kernel.layout.batches) : 0);
@@ -82,7 +70,7 @@ function prepare(kernel, each, plan) {
 // that goes on where it has come to: {begun}. Returns arrays over the orbits.
 export function diagram(kernel, { each, starts, plan, chain, begun }) {
   const { layout } = kernel, m = each.length, states = 2 * layout.masses, width = states + 3;
-  const { known, rate } = prepare(kernel, each, plan), orbits = chain ? 1 : m;
+  const { known, rate, machines } = prepare(kernel, each, plan), orbits = chain ? 1 : m;
   for (const [name, value] of Object.entries({
     transient: plan.transient, record: plan.record, warm_up: plan.lyapunov ? Math.min(plan.transient, layout.warm_up) : 0, settle: 0,
     states: true, lyapunov: plan.lyapunov, impacts: false, contacts: false, energy: false, attractors: false, section_side: plan.side,
@@ -121,7 +109,7 @@ export function diagram(kernel, { each, starts, plan, chain, begun }) {
     status: Int8Array.from({ length: m }, (_, i) => (known[i] ? resultOf(kernel, i, "status") : NOT_SET_UP)),
     period: Int32Array.from({ length: m }, (_, i) => resultOf(kernel, i, "period")),
     lyapunov: exponents("lyapunov"), lyapunov_error: exponents("lyapunov_error"),
-    grazing: [pointOf(kernel, 0, "middle"), Math.hypot(...swingOf(kernel, 0))],
+    steady: steadyGap(machines[0]),
     begun: Number.isFinite(own[0]) ? [...own, 0, 0, pointOf(kernel, last, "tau")] : null,
   };
 }

@@ -304,9 +304,9 @@ class Diagram {
   }
 
   // the grazing clearances, where the clearance is swept
-  grazes({ grazing: [middle, swing], known }) {
-    if (this.axis !== "b" || !known[0] || !swing) return undefined;
-    const offset = this.numbers.offset ?? 0, { low, high } = heightOf.stops(this.at(0));
+  grazes({ steady, known }) {
+    if (this.axis !== "b" || !known[0] || !steady) return undefined;
+    const { middle } = steady, swing = Math.hypot(steady.real, steady.imaginary), offset = this.numbers.offset ?? 0, { low, high } = heightOf.stops(this.at(0));
     const both = [...(high < Infinity ? [middle + swing - offset] : []), ...(low > -Infinity ? [swing - middle + offset] : [])];
     return [...new Set(both)].sort((a, b) => a - b);
   }

@@ -1,0 +1,38 @@
+// The steady motion of the gap, g = middle + Re(G e^{i(omega t + tau)}), from the numbers of an oscillator.
+
+import { MASSES as N, NORMAL } from "./oscillator.js";
+
+const SINGULAR = 1e-13; // of the largest number of an equation: a pivot below which there is no solution
+
+// {real, imaginary, middle}; null where there is none, in resonance or where springs do not balance a constant force
+export function steadyGap(numbers) {
+  const matrix = (k) => (i, j) => numbers[(k * N + i) * N + j];
+  const M = matrix(0), K = matrix(1), C = matrix(2), normal = numbers.slice(NORMAL, NORMAL + N), omega = numbers[NORMAL + N];
+  const [constant, sine, cosine] = [0, 1, 2].map((k) => numbers.slice(NORMAL + N + 1 + k * N, NORMAL + N + 1 + (k + 1) * N));
+  const each = [...Array(N).keys()], along = (x) => normal.reduce((sum, n, i) => sum + n * x[i], 0);
+  // (K - omega^2 M + i omega C) X = cosine - i sine, as real and imaginary parts
+  const A = (i, j) => K(i, j) - omega * omega * M(i, j), B = (i, j) => omega * C(i, j);
+  const X = solution([
+    ...each.map((i) => [...each.map((j) => A(i, j)), ...each.map((j) => -B(i, j)), cosine[i]]),
+    ...each.map((i) => [...each.map((j) => B(i, j)), ...each.map((j) => A(i, j)), -sine[i]]),
+  ]);
+  const rest = constant.some((force) => force !== 0) ? solution(each.map((i) => [...each.map((j) => K(i, j)), constant[i]])) : constant;
+  return X && rest && { real: along(X.slice(0, N)), imaginary: along(X.slice(N)), middle: along(rest) };
+}
+
+// x of equations, each a row of coefficients and what they are equal to; null where there is none
+function solution(rows) {
+  const n = rows.length;
+  for (let k = 0; k < n; k++) {
+    const size = Math.max(...rows[k].map(Math.abs)), best = rows.slice(k).reduce((most, row, i) => (Math.abs(row[k]) > Math.abs(rows[most][k]) ? k + i : most), k);
+    [rows[k], rows[best]] = [rows[best], rows[k]];
+    if (!(Math.abs(rows[k][k]) > SINGULAR * size)) return null;
+    for (let i = k + 1; i < n; i++) {
+      const by = rows[i][k] / rows[k][k];
+      for (let j = k; j <= n; j++) rows[i][j] -= by * rows[k][j];
+    }
+  }
+  const x = Array(n).fill(0);
+  for (let k = n - 1; k >= 0; k--) x[k] = (rows[k][n] - x.reduce((sum, one, j) => sum + (j > k ? rows[k][j] * one : 0), 0)) / rows[k][k];
+  return x;
+}
