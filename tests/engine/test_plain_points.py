@@ -7,8 +7,9 @@ from support import slow_cases
 import vibro_sweep as vs
 from vibro_sweep.engine.points import any_points
 from vibro_sweep.engine.points.contact import flight_matrix
-from vibro_sweep.engine.points.plain_modes import COUPLED
-from vibro_sweep.engine.points.plain_points import machine_of, modes_of, set_point
+from vibro_sweep.engine.points.coupled_points import set_coupled_point
+from vibro_sweep.engine.points.plain_modes import COUPLED, set_modes
+from vibro_sweep.engine.points.plain_points import machine_of, modes_of
 from vibro_sweep.engine.simd.jit import exported
 from vibro_sweep.oscillator.linear import stacked
 
@@ -106,7 +107,7 @@ def test_what_is_not_plain_is_left_to_numpy(changes, monkeypatch):
 @exported
 def set_any_point(machine, point, modes):
     """As a page does, which takes points without frames as well."""
-    return set_point(machine[0], point[0], modes[0], True)
+    return set_modes(machine[0], modes[0]) == COUPLED and set_coupled_point(machine[0], point[0], modes[0])
 
 
 def test_points_of_coupled_modes_have_all_but_frames():
@@ -121,7 +122,7 @@ def test_points_of_coupled_modes_have_all_but_frames():
         machine, point = np.zeros(1, machine_of(n)), np.zeros(1, wanted.dtype)
         for name in machine.dtype.names:
             machine[name] = getattr(q, name)
-        assert set_any_point(machine, point, np.empty(1, modes_of(n))) == COUPLED
+        assert set_any_point(machine, point, np.empty(1, modes_of(n)))
         assert np.isnan(point["to_frame"]).all() and np.isinf(point["swing"][0])
         for name in ("stiffness", "damping", "force", "constrained", "push", "P", "back", "divergence"):
             assert np.abs(point[name] - wanted[name]).max() <= BITS_LOST * np.abs(wanted[name]).max(), name

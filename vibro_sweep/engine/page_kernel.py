@@ -1,14 +1,15 @@
 """What a page computes in a browser, where there is no Python: one kernel, which becomes a WebAssembly module.
 
 It has the machine's own unit of time, as all of the engine. Which oscillators it can set up is said by
-points/plain_points.py; of others the page has no points.
+points/plain_points.py and points/coupled_points.py; of others the page has no points.
 """
 
 import math
 
 from vibro_sweep.engine.orbit_block import run_points
-from vibro_sweep.engine.points.plain_modes import UNKNOWN
-from vibro_sweep.engine.points.plain_points import APART, set_point
+from vibro_sweep.engine.points.coupled_points import set_coupled_point
+from vibro_sweep.engine.points.plain_modes import PLAIN, UNKNOWN, set_modes
+from vibro_sweep.engine.points.plain_points import APART, set_plain_point
 from vibro_sweep.engine.simd.jit import exported, inline, jit
 from vibro_sweep.engine.tables.cells import LEAST_CELLS, LONGEST, MOST_CELLS
 from vibro_sweep.engine.tables.flight import WIDTH
@@ -41,14 +42,15 @@ def run_page(
 def set_points(machines, stops, laws, release, known, modes, points, frames):
     """Set up points (m,) with their stops and cells."""
     for i in range(len(machines)):
-        p = points[i]
-        known[i] = set_point(machines[i], p, modes[0], frames) != UNKNOWN
-        known[i] = known[i] and not (p.turned and p.rate > APART * p.omega)
+        q, p, w = machines[i], points[i], modes[0]
+        kind = set_modes(q, w)
+        plain = kind == PLAIN and set_plain_point(q, p, w, frames) and not (p.turned and p.rate > APART * p.omega)
+        known[i] = plain or (kind != UNKNOWN and set_coupled_point(q, p, w))
         p.cells = cells_of(max(p.rate, p.omega), p.omega) if known[i] else 0
         known[i] = p.cells > 0
         for j in range(4):
             p.stops[j] = stops[i, j]
-        set_law(laws, release, i, machines[i], p, modes[0])
+        set_law(laws, release, i, q, p, w)
 
 
 @jit

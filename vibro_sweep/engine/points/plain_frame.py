@@ -2,8 +2,6 @@
 
 import math
 
-import numpy as np
-
 from vibro_sweep.engine.points.frame import LEAST_SCALE, SLOWEST
 from vibro_sweep.engine.points.invariant_planes import UNOBSERVABLE
 from vibro_sweep.engine.simd.jit import jit
@@ -43,16 +41,6 @@ def set_frame(q, p, w):
             p.to_frame[2 * m + 1, 2 * i + 1] = dual
             p.from_frame[2 * i, 2 * m], p.from_frame[2 * i + 1, 2 * m] = shape / scale, -eta * shape / scale
             p.from_frame[2 * i + 1, 2 * m + 1] = shape
-
-
-@jit
-def leave_out_frame(p):
-    """No frame: exponents are NaN."""
-    for m in range(len(p.frame_eta)):
-        p.frame_eta[m], p.frame_square[m], p.frame_scale[m] = 0.0, 0.0, 1.0
-    for i in range(len(p.to_frame)):
-        for j in range(len(p.to_frame)):
-            p.to_frame[i, j] = p.from_frame[i, j] = np.nan
 
 
 @jit

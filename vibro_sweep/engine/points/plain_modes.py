@@ -14,10 +14,7 @@ UNKNOWN, COUPLED, PLAIN = range(3)
 
 @jit
 def set_modes(q, w):
-    """Fill the modes of an oscillator. Returns PLAIN, COUPLED where dampers couple modes, or UNKNOWN where masses do.
-
-    Where they are coupled, all squares and dampings are bounds: no motion is stiffer, nor damped more.
-    """
+    """Fill the modes of an oscillator. Returns PLAIN, COUPLED where dampers couple them, or UNKNOWN where masses do."""
     n, K_size, C_size = len(q.M), 0.0, 0.0
     for i in range(n):
         if not 0.0 < q.M[i, i] < np.inf:
@@ -40,24 +37,7 @@ def set_modes(q, w):
         for j in range(n):
             w.shape[i, j] = w.V[i, j] / math.sqrt(q.M[i, i])
     springs = are_parted(w.K, K_size, w, w.square, w.square_error)
-    if are_parted(w.C, C_size, w, w.damping, w.damping_error) and springs:
-        return PLAIN
-    stiffest, strongest = largest_sum(w.K), largest_sum(w.C)
-    for j in range(n):
-        w.square[j], w.damping[j] = stiffest, strongest
-    return COUPLED
-
-
-@jit
-def largest_sum(matrix):
-    """The largest sum of moduli in a row, which no eigenvalue exceeds."""
-    largest = 0.0
-    for i in range(len(matrix)):
-        total = 0.0
-        for j in range(len(matrix)):
-            total += abs(matrix[i, j])
-        largest = max(largest, total)
-    return largest
+    return PLAIN if are_parted(w.C, C_size, w, w.damping, w.damping_error) and springs else COUPLED
 
 
 @jit

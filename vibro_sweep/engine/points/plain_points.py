@@ -15,9 +15,9 @@ import math
 import numpy as np
 
 from vibro_sweep.engine.points.plain_coordinates import set_constrained, set_coordinates, set_equations
-from vibro_sweep.engine.points.plain_frame import leave_out_frame, set_frame
-from vibro_sweep.engine.points.plain_modes import COUPLED, PLAIN, UNKNOWN, set_modes
-from vibro_sweep.engine.points.plain_steady import set_steady, set_unconfined
+from vibro_sweep.engine.points.plain_frame import set_frame
+from vibro_sweep.engine.points.plain_modes import PLAIN, set_modes
+from vibro_sweep.engine.points.plain_steady import set_steady
 from vibro_sweep.engine.simd.jit import exported, jit
 
 APART = 8.0  # a rate over that of the force from which on tables are computed in twice the digits, where squares of
@@ -65,41 +65,33 @@ def set_plain_points(machines, points, known, modes, frames):
 
     frames : whether tangent vectors are wanted; modes (1,): scratch
     """
+    w = modes[0]
     for i in range(len(machines)):
-        known[i] = set_point(machines[i], points[i], modes[0], frames) == PLAIN
+        known[i] = set_modes(machines[i], w) == PLAIN and set_plain_point(machines[i], points[i], w, frames)
 
 
 @jit
-def set_point(q, p, w, frames):
-    """Fill a point. Returns PLAIN; COUPLED, where dampers couple modes, and in resonance: such a point has no frame,
-    nor what confines motions; or UNKNOWN, where it is not filled."""
-    kind = set_modes(q, w)
-    if kind == UNKNOWN or not set_rate(q, p, w, kind):
-        return UNKNOWN
+def set_plain_point(q, p, w, frames):
+    """Fill a point whose modes are known. Returns whether rates are near enough to that of the force, and no mode is in
+    resonance."""
+    if not set_rate(q, p, w):
+        return False
     set_coordinates(q, p)
     set_equations(q, p, w)
-    if not set_constrained(q, p, w):
-        return UNKNOWN
-    if kind == PLAIN and set_steady(q, p, w):
-        if frames:
-            set_frame(q, p, w)
-        return PLAIN
-    set_unconfined(p)
+    if not set_constrained(q, p, w) or not set_steady(q, p, w):
+        return False
     if frames:
-        leave_out_frame(p)
-    return COUPLED
+        set_frame(q, p, w)
+    return True
 
 
 @jit
-def set_rate(q, p, w, kind):
-    """The rates of a point, of a coupled one bounds. Returns whether they, and natural frequencies, are near enough to
-    that of the force."""
+def set_rate(q, p, w):
+    """The rates of a point. Returns whether they, and natural frequencies, are near enough to that of the force."""
     omega, fastest, slowest, held, damping = q.omega, 0.0, np.inf, np.inf, 0.0  # slowest of all, of those that are held
     for j in range(len(w.square)):
         fastest, slowest = max(fastest, rate_of(w.square[j], w.damping[j])), min(slowest, w.square[j])
         held, damping = min(held, w.square[j] if w.square[j] > 0.0 else np.inf), max(damping, w.damping[j])
-    if kind == COUPLED:  # motions may be as soft as nothing
-        fastest, slowest = max(fastest, damping), 0.0
     p.omega, p.tau, p.rate = omega, q.tau, fastest
     # what holds a mass takes stiffness and damping of all motion that is left from between those of the modes
     p.constrained_rate = max(fastest, rate_of(slowest, damping))

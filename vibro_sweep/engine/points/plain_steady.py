@@ -13,8 +13,11 @@ def set_steady(q, p, w):
     """How far from its steady motion the oscillator may be and reach no stop (confinement.py); not at all where springs
     leave a mode free. Returns whether no mode is in resonance."""
     n, omega, sin, cos = len(q.M), q.omega, math.sin(q.tau), math.cos(q.tau)
-    set_unconfined(p)
-    free = False
+    p.middle, p.swing, free = 0.0, math.inf, False
+    for i in range(2 * n):
+        p.steady[i] = 0.0
+        for j in range(2 * n):
+            p.confining[i, j] = 0.0
     for i in range(n):
         w.rest[i], w.compliance[i], w.steady[0, i], w.steady[1, i] = q.constant[i], q.normal[i], 0.0, 0.0
         free = free or w.square[i] == 0.0
@@ -50,16 +53,6 @@ def set_steady(q, p, w):
                     stiffness += p.back[k, i] * q.K[k, m] * p.back[m, j]
             p.confining[2 * i, 2 * j], p.confining[2 * i + 1, 2 * j + 1] = compliance * stiffness, compliance * mass
     return True
-
-
-@jit
-def set_unconfined(p):
-    """No steady motion that confines: any distance from it may reach a stop."""
-    p.middle, p.swing = 0.0, math.inf
-    for i in range(len(p.steady)):
-        p.steady[i] = 0.0
-        for j in range(len(p.steady)):
-            p.confining[i, j] = 0.0
 
 
 @jit
