@@ -68,7 +68,7 @@ def in_the_frame(point: np.void) -> np.ndarray:
 
 @pytest.mark.parametrize("count", [40, *slow_cases(500)])
 def test_a_plain_point_is_that_of_any_oscillator(count, monkeypatch):
-    rng, plain = np.random.default_rng(12), 0
+    rng, plain = np.random.default_rng(13), 0
     for _ in range(count):
         system = drawn(rng)
         squares = np.linalg.eigvals(np.linalg.solve(system.linear.M, system.linear.K)).real
@@ -87,7 +87,7 @@ def test_a_plain_point_is_that_of_any_oscillator(count, monkeypatch):
             assert np.abs(one - other).max() <= BITS_LOST * np.abs(other).max(), (system, name)
         assert points[0]["constrained_rate"] >= points[1]["constrained_rate"] * (1 - BITS_LOST)
         assert in_the_frame(points[0]) <= 2.0**-48, system
-    assert plain > 0.75 * count
+    assert plain > 0.8 * count
 
 
 @pytest.mark.parametrize(

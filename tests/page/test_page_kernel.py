@@ -81,7 +81,7 @@ def test_a_model_that_computes_with_more_has_no_formulas(place):
 
 def test_modules_of_a_wheel_need_no_linker(tmp_path, monkeypatch):
     assert all(kernel_name(kernel_module.kind_named(name)) == name for name in kernel_module.SHIPPED)
-    monkeypatch.setattr(kernel_module, "FOLDER", tmp_path)
+    monkeypatch.setattr(kernel_module, "OF_WHEEL", tmp_path)
     monkeypatch.setattr(kernel_module, "find_spec", lambda name: None)
     monkeypatch.setattr(kernel_module.kernel_cache, "FOLDER", None)
     (tmp_path / kernel_module.shipped_name("2c")).write_bytes(lzma.compress(b"code"))

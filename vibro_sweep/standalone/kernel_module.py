@@ -21,7 +21,7 @@ from vibro_sweep.engine.simd import kernel_cache
 
 FEATURES = "+simd128,+bulk-memory,+nontrapping-fptoint,+sign-ext"  # in all browsers since March 2023
 STACK = 2**20  # bytes
-FOLDER = Path(__file__).parent / "modules"  # of a wheel
+OF_WHEEL = Path(__file__).parent / "modules"  # of a wheel
 SHIPPED = ("1c", "2c", "3c", "1ck", "2ck", "3ck")  # kinds, by `kernel_name`
 ENTRY = "run_page"
 NEEDS = "page needs the package ziglang, which links its module: pip install 'vibro_sweep[page]'"
@@ -31,7 +31,7 @@ _log = logging.getLogger("vibro_sweep")
 
 def module_of(kind: Kind) -> bytes:
     """The module for oscillators of this kind. Raises MissingPackageError, and MachineError where it cannot be made."""
-    shipped = FOLDER / shipped_name(kernel_name(kind))
+    shipped = OF_WHEEL / shipped_name(kernel_name(kind))
     if shipped.exists():
         return lzma.decompress(shipped.read_bytes())
     folder = kernel_cache.FOLDER
@@ -55,7 +55,7 @@ def module_of(kind: Kind) -> bytes:
 
 
 def shipped_name(name: str) -> str:
-    """The file of a module in `FOLDER`; the sources of the engine are in its name, as another one has other modules."""
+    """The file of a module in `OF_WHEEL`; the sources of the engine are in its name, as another one has other modules."""
     return f"page_{name}_{kernel_cache.source_hash()}.wasm.xz"
 
 

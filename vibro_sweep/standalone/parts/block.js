@@ -15,9 +15,9 @@ function setUp(kernel, each, plan) {
   const { layout } = kernel, m = each.length, width = layout.machine, rate = 2 ** Math.round(Math.log2(each[0].omega));
   const scales = powers.map((power) => rate ** power);
   const machines = each.map((v) => numbersOf(v).map((value, n) => value / scales[n]));
+  const steady = machines.map(steadyGap), follows = each.map((v) => typeof v.tau !== "number");
   machines.forEach((numbers, i) => { // (18): the phase at which the steady gap is largest at t = 0; 0 where there is none
-    const steady = typeof each[i].tau === "number" ? null : steadyGap(numbers);
-    if (typeof each[i].tau !== "number") numbers[width - 1] = steady ? Math.atan2(-steady.imaginary, steady.real) : 0;
+    if (follows[i]) numbers[width - 1] = steady[i] ? Math.atan2(-steady[i].imaginary, steady[i].real) : 0;
     kernel.floats("machines", width, i * width).set(numbers.slice(0, width));
     kernel.floats("stops", 4, 4 * i).set(numbers.slice(STOPS, STOPS + 4));
     if (layout.compliant) kernel.floats("laws", 6, 6 * i).set(numbers.slice(STOPS + 4));
@@ -33,11 +33,12 @@ function setUp(kernel, each, plan) {
   const known = new Uint8Array(kernel.memory.buffer, kernel.place.known.at, m).slice();
   const { at } = kernel.place.points, { size, cells: [cells] } = layout.point;
   machines.forEach((numbers, i) => { // rest is held by a stop where 0 is behind it, and states are counted from elsewhere
-    if (numbers[STOPS] <= 0 && numbers[STOPS + 1] >= 0) return;
+    const unknown = follows[i] && steady[i] === undefined; // its phase
+    if (numbers[STOPS] <= 0 && numbers[STOPS + 1] >= 0 && !unknown) return;
     kernel.view.setBigInt64(at + i * size + cells, 0n, true);
     known[i] = 0;
   });
-  return { known, rate, machines };
+  return { known, rate, steady };
 }
 
 const rounded = (count) => ROUND * Math.ceil(count / ROUND);
@@ -70,7 +71,7 @@ function prepare(kernel, each, plan) {
 // that goes on where it has come to: {begun}. Returns arrays over the orbits.
 export function diagram(kernel, { each, starts, plan, chain, begun }) {
   const { layout } = kernel, m = each.length, states = 2 * layout.masses, width = states + 3;
-  const { known, rate, machines } = prepare(kernel, each, plan), orbits = chain ? 1 : m;
+  const { known, rate, steady } = prepare(kernel, each, plan), orbits = chain ? 1 : m;
   for (const [name, value] of Object.entries({
     transient: plan.transient, record: plan.record, warm_up: plan.lyapunov ? Math.min(plan.transient, layout.warm_up) : 0, settle: 0,
     states: true, lyapunov: plan.lyapunov, impacts: false, contacts: false, energy: false, attractors: false, section_side: plan.side,
@@ -109,7 +110,7 @@ export function diagram(kernel, { each, starts, plan, chain, begun }) {
     status: Int8Array.from({ length: m }, (_, i) => (known[i] ? resultOf(kernel, i, "status") : NOT_SET_UP)),
     period: Int32Array.from({ length: m }, (_, i) => resultOf(kernel, i, "period")),
     lyapunov: exponents("lyapunov"), lyapunov_error: exponents("lyapunov_error"),
-    steady: steadyGap(machines[0]),
+    steady: steady[0],
     begun: Number.isFinite(own[0]) ? [...own, 0, 0, pointOf(kernel, last, "tau")] : null,
   };
 }

@@ -1,4 +1,3 @@
-
 // What a page's file begins with: its parts are unpacked, and its script is run. In words of 2015, so that an older
 // browser reads what it cannot do.
 (function () {

@@ -2,9 +2,11 @@
 
 import { MASSES as N, NORMAL } from "./oscillator.js";
 
-const SINGULAR = 1e-13; // of the largest number of an equation: a pivot below which there is no solution
+const SINGULAR = 1e-13; // of the largest number of an equation: a pivot below which it has no one solution
+const UNBALANCED = 1e-9; // of the largest force: what no state balances
 
-// {real, imaginary, middle}; null where there is none, in resonance or where springs do not balance a constant force
+// {real, imaginary, middle}; null where springs do not balance a constant force, so that there is none; undefined where
+// it is not told here: in resonance, and where free modes leave several states that balance a constant force
 export function steadyGap(numbers) {
   const matrix = (k) => (i, j) => numbers[(k * N + i) * N + j];
   const M = matrix(0), K = matrix(1), C = matrix(2), normal = numbers.slice(NORMAL, NORMAL + N), omega = numbers[NORMAL + N];
@@ -17,16 +19,19 @@ export function steadyGap(numbers) {
     ...each.map((i) => [...each.map((j) => B(i, j)), ...each.map((j) => A(i, j)), -sine[i]]),
   ]);
   const rest = constant.some((force) => force !== 0) ? solution(each.map((i) => [...each.map((j) => K(i, j)), constant[i]])) : constant;
-  return X && rest && { real: along(X.slice(0, N)), imaginary: along(X.slice(N)), middle: along(rest) };
+  if (!X || rest === undefined) return undefined;
+  return rest && { real: along(X.slice(0, N)), imaginary: along(X.slice(N)), middle: along(rest) };
 }
 
-// x of equations, each a row of coefficients and what they are equal to; null where there is none
+// x of equations, each a row of coefficients and what they are equal to; null where there is none, undefined where there
+// may be several
 function solution(rows) {
-  const n = rows.length;
+  const n = rows.length, force = Math.max(...rows.map((row) => Math.abs(row[n])));
+  const size = Math.max(...rows.flatMap((row) => row.slice(0, n).map(Math.abs)));
   for (let k = 0; k < n; k++) {
-    const size = Math.max(...rows[k].map(Math.abs)), best = rows.slice(k).reduce((most, row, i) => (Math.abs(row[k]) > Math.abs(rows[most][k]) ? k + i : most), k);
+    const best = rows.slice(k).reduce((most, row, i) => (Math.abs(row[k]) > Math.abs(rows[most][k]) ? k + i : most), k);
     [rows[k], rows[best]] = [rows[best], rows[k]];
-    if (!(Math.abs(rows[k][k]) > SINGULAR * size)) return null;
+    if (!(Math.abs(rows[k][k]) > SINGULAR * size)) return rows.slice(k).some((row) => Math.abs(row[n]) > UNBALANCED * force) ? null : undefined;
     for (let i = k + 1; i < n; i++) {
       const by = rows[i][k] / rows[k][k];
       for (let j = k; j <= n; j++) rows[i][j] -= by * rows[k][j];
