@@ -55,7 +55,7 @@ def module_of(kind: Kind) -> bytes:
 
 
 def shipped_name(name: str) -> str:
-    """The file of a module in `OF_WHEEL`; the sources of the engine are in its name, as another one has other modules."""
+    """The file of a module in `OF_WHEEL`; the engine's sources are in its name, as another one has other modules."""
     return f"page_{name}_{kernel_cache.source_hash()}.wasm.xz"
 
 
