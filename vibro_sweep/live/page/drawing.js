@@ -142,7 +142,7 @@ export class Drawing {
     const found = Array.from(data.exponents).filter(Number.isFinite).sort((a, b) => a - b);
     if (!found.length) return;
     const low = found[Math.floor(0.01 * (found.length - 1))], high = found[found.length - 1];
-    const half = Math.max(0.6 * (high - low), 1e-6), centre = (Math.max(high, 0) + Math.min(low, 0)) / 2;
+    const top = Math.max(high, 0), bottom = Math.min(low, 0), half = Math.max(0.6 * (top - bottom), 1e-6), centre = (top + bottom) / 2;
     this.exponentRange = [centre - half, centre + half];
   }
 
@@ -258,6 +258,10 @@ export class Drawing {
       context.textAlign = x(value) > dots.x + dots.w - 30 ? "right" : "left";
       context.fillText("b*", x(value) + (context.textAlign === "left" ? 4 : -4), dots.y + 3);
     }
+    context.save();
+    context.beginPath();
+    context.rect(dots.x, dots.y, dots.w, dots.h); // these have a height there, and none among the exponents
+    context.clip();
     for (const values of marks.stops) {
       context.strokeStyle = theme.faint;
       context.setLineDash([2, 3]);
@@ -265,6 +269,7 @@ export class Drawing {
       context.setLineDash([]);
     }
     for (const one of marks.branches) this.branch(one, x, y, theme);
+    context.restore();
     if (marks.window) this.ends(marks.window, units.axis, x, dots, inside, theme);
     if (marks.line !== null && inside(marks.line)) {
       context.strokeStyle = theme.accent;
