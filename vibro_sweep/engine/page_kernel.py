@@ -1,15 +1,17 @@
 """What a page computes in a browser, where there is no Python: one kernel, which becomes a WebAssembly module.
 
-It has the machine's own unit of time, as all of the engine. Which oscillators it can set up is said by
-points/plain_points.py and points/coupled_points.py; of others the page has no points.
+It has the machine's own unit of time, as all of the engine. Points are those of points/plain_points.py, or of
+points/coupled_points.py; of oscillators that are neither, and of those that cells do not resolve, the page has none.
 """
 
 import math
 
 from vibro_sweep.engine.orbit_block import run_points
 from vibro_sweep.engine.points.coupled_points import set_coupled_point
+from vibro_sweep.engine.points.plain_coordinates import inverse_of_m_e
 from vibro_sweep.engine.points.plain_modes import PLAIN, UNKNOWN, set_modes
-from vibro_sweep.engine.points.plain_points import APART, set_plain_point
+from vibro_sweep.engine.points.plain_points import set_plain_point
+from vibro_sweep.engine.points.refined_equations import refine_equations
 from vibro_sweep.engine.simd.jit import exported, inline, jit
 from vibro_sweep.engine.tables.cells import LEAST_CELLS, LONGEST, MOST_CELLS
 from vibro_sweep.engine.tables.flight import WIDTH
@@ -44,10 +46,12 @@ def set_points(machines, stops, laws, release, known, modes, points, frames):
     for i in range(len(machines)):
         q, p, w = machines[i], points[i], modes[0]
         kind = set_modes(q, w)
-        plain = kind == PLAIN and set_plain_point(q, p, w, frames) and not (p.turned and p.rate > APART * p.omega)
+        plain = kind == PLAIN and set_plain_point(q, p, w, frames)
         known[i] = plain or (kind != UNKNOWN and set_coupled_point(q, p, w))
         p.cells = cells_of(max(p.rate, p.omega), p.omega) if known[i] else 0
         known[i] = p.cells > 0
+        if known[i] and p.apart:
+            refine_equations(q, p, w)
         for j in range(4):
             p.stops[j] = stops[i, j]
         set_law(laws, release, i, q, p, w)
@@ -70,9 +74,8 @@ def set_law(laws, release, i, q, p, modes):
     Where no motion is stiffer than k, nor damped more than c, no root of s^2 + c s + k is beyond max(sqrt k, c).
     """
     if laws is not None:
-        compliance, stiffest, strongest = 0.0, 0.0, 0.0
+        compliance, stiffest, strongest = inverse_of_m_e(q, modes), 0.0, 0.0
         for j in range(len(q.M)):
-            compliance += q.normal[j] * q.normal[j] / q.M[j, j]
             stiffest, strongest = max(stiffest, modes.square[j]), max(strongest, modes.damping[j])
         p.contact_mass, p.release = 1.0 / compliance, release
         for n in range(2):

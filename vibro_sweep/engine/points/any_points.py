@@ -110,8 +110,7 @@ def _points(q: Linear, rows: np.ndarray, which: np.ndarray, kind: Kind, frames: 
     machines = np.ascontiguousarray(rows[:, :-n]).view(machine_of(n))[:, 0]
     set_plain_points(machines, points, plain, np.empty(1, modes_of(n)), frames)
     points["cells"] = cells.cells_for(np.maximum(points["rate"], points["omega"]), points["omega"])
-    apart = points["turned"] & (points["rate"] > APART * points["omega"])
-    plain &= (points["cells"] > 0) & (points["cells"] != cells.STIFF_CELLS) & ~apart & ~rows[:, -n:].any(-1)
+    plain &= (points["cells"] > 0) & (points["cells"] != cells.STIFF_CELLS) & ~points["apart"] & ~rows[:, -n:].any(-1)
     if not plain.all():
         others = which[~plain]
         points[~plain] = _other_points(selected(q, others), kind, frames)

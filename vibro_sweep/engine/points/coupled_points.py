@@ -16,13 +16,14 @@ from vibro_sweep.engine.simd.jit import jit
 
 @jit
 def set_coupled_point(q, p, w):
-    """Fill a point. Returns whether rates are near enough to that of the force; w has bounds in place of modes."""
+    """Fill a point, with bounds in place of modes in w. Returns whether its equations while a stop holds the gap were
+    found."""
     n, stiffest, strongest = len(q.M), largest_sum(w.K), largest_sum(w.C)
     for j in range(n):
         w.square[j], w.damping[j] = stiffest, strongest
     p.omega, p.tau, p.rate = q.omega, q.tau, max(math.sqrt(stiffest), strongest)
-    p.constrained_rate, p.rounding = p.rate, 0.0
-    set_coordinates(q, p)
+    p.constrained_rate, p.rounding, p.apart = p.rate, 0.0, p.rate > APART * p.omega
+    set_coordinates(q, p, w)
     set_equations(q, p, w)
     p.middle, p.swing = 0.0, math.inf
     for m in range(n):
@@ -31,7 +32,7 @@ def set_coupled_point(q, p, w):
         p.steady[i] = 0.0
         for j in range(2 * n):
             p.confining[i, j], p.to_frame[i, j], p.from_frame[i, j] = 0.0, np.nan, np.nan
-    return set_constrained(q, p, w) and p.rate <= APART * p.omega
+    return set_constrained(q, p, w)
 
 
 @jit

@@ -1,4 +1,4 @@
-"""Contact coordinates of a plain oscillator (plain_points.py), and its equations in them (contact.py)."""
+"""Contact coordinates of an oscillator whose masses are factorised, and its equations in them (contact.py)."""
 
 import numpy as np
 
@@ -7,18 +7,19 @@ from vibro_sweep.engine.simd.jit import jit
 
 
 @jit
-def set_coordinates(q, p):
-    """P and its inverse: the gap, and the masses but the one that is held least (contact.py)."""
+def set_coordinates(q, p, w):
+    """P and its inverse: the gap, and the masses but the one that is held least; M^-1 n, and the push of an impulse."""
     n, spare, least = len(q.M), 0, np.inf
     for i in range(n):
+        w.mobility[i] = q.normal[i]
         if q.normal[i] != 0.0:
             held = (abs(q.K[i, i]) + q.omega * abs(q.C[i, i]) + q.omega * q.omega * abs(q.M[i, i])) / q.normal[i]
             held = held / q.normal[i]
             if held < least:
                 spare, least = i, held
-    along = 0.0
+    solve(w.mass, n, w.mobility)
+    along = inverse_of_m_e(q, w)
     for i in range(n):
-        along += q.normal[i] * (q.normal[i] / q.M[i, i])
         for j in range(n):
             p.P[i, j] = p.back[i, j] = 0.0
     row = 1
@@ -27,7 +28,7 @@ def set_coordinates(q, p):
         if j != spare:
             p.P[row, j] = p.back[j, row] = 1.0
             p.back[spare, row] = 0.0 - q.normal[j] / q.normal[spare]
-            p.push[row] = q.normal[j] / q.M[j, j] / along
+            p.push[row] = w.mobility[j] / along
             row += 1
     p.back[spare, 0], p.push[0] = 1.0 / q.normal[spare], 1.0
     p.turned = False
@@ -38,39 +39,34 @@ def set_coordinates(q, p):
 
 
 @jit
-def set_equations(q, p, w):
-    """q'' + damping q' + stiffness q = force (sin, cos, 1)."""
-    n = len(q.M)
-    p.divergence = 0.0
-    into_contact(q, p, q.K, w.A, p.stiffness)
-    into_contact(q, p, q.C, w.A, p.damping)
-    for i in range(n):
-        p.divergence -= p.damping[i, i]
-        sin = cos = one = 0.0
-        for k in range(n):
-            if p.P[i, k] != 0.0:
-                share = p.P[i, k] / q.M[k, k]
-                sin += share * q.sine[k]
-                cos += share * q.cosine[k]
-                one += share * q.constant[k]
-        p.force[i, 0], p.force[i, 1], p.force[i, 2] = sin, cos, one
+def inverse_of_m_e(q, w):
+    """n M^-1 n."""
+    total = 0.0
+    for i in range(len(q.M)):
+        total += q.normal[i] * w.mobility[i]
+    return total
 
 
 @jit
-def into_contact(q, p, matrix, scratch, out):
-    """P M^-1 matrix P^-1."""
-    n = len(matrix)
-    for i in range(n):
-        for j in range(n):
-            scratch[i, j] = 0.0
+def set_equations(q, p, w):
+    """q'' + damping q' + stiffness q = force (sin, cos, 1): P M^-1 of the forces."""
+    n, row = len(q.M), w.row
+    p.divergence = 0.0
+    for j in range(2 * n + 3):
+        for k in range(n):
+            row[k] = free_force(q, p, k, j)
+        solve(w.mass, n, row)
+        for i in range(n):
+            total = 0.0
             for k in range(n):
-                scratch[i, j] += matrix[i, k] * p.back[k, j]
-            scratch[i, j] /= q.M[i, i]
-    for i in range(n):
-        for j in range(n):
-            out[i, j] = 0.0
-            for k in range(n):
-                out[i, j] += p.P[i, k] * scratch[k, j]
+                total += p.P[i, k] * row[k]
+            if j < n:
+                p.stiffness[i, j] = 0.0 - total
+            elif j < 2 * n:
+                p.damping[i, j - n] = 0.0 - total
+                p.divergence += total if i == j - n else 0.0
+            else:
+                p.force[i, j - 2 * n] = total
 
 
 @jit
@@ -79,9 +75,7 @@ def set_constrained(q, p, w):
     n, A, row = len(q.M), w.A, w.row
     for i in range(1, n):
         for j in range(1, n):
-            A[i - 1, j - 1] = 0.0
-            for k in range(n):
-                A[i - 1, j - 1] += p.back[k, i] * q.M[k, k] * p.back[k, j]
+            A[i - 1, j - 1] = in_contact(p, q.M, i, j)
     if not factorise(A, n - 1):
         return False
     for j in range(2 * n + 3):
@@ -94,6 +88,16 @@ def set_constrained(q, p, w):
         for i in range(1, n):
             p.constrained[i, j] = row[i - 1]
     return True
+
+
+@jit
+def in_contact(p, matrix, i, j):
+    """Entry i, j of back^T matrix back."""
+    total, n = 0.0, len(matrix)
+    for k in range(n):
+        for m in range(n):
+            total += p.back[k, i] * matrix[k, m] * p.back[m, j]
+    return total
 
 
 @jit

@@ -4,21 +4,20 @@ import math
 
 from vibro_sweep.engine.points.frame import LEAST_SCALE, SLOWEST
 from vibro_sweep.engine.points.invariant_planes import UNOBSERVABLE
+from vibro_sweep.engine.points.plain_coordinates import inverse_of_m_e
 from vibro_sweep.engine.simd.jit import jit
 
 
 @jit
 def set_frame(q, p, w):
     """The frame of tangent vectors (frame.py): each mode is a plane, those that the contact does not see come first."""
-    n, effective, first = len(q.M), 0.0, 0
-    for i in range(n):
-        effective += q.normal[i] * q.normal[i] / q.M[i, i]
+    n, along, first = len(q.M), math.sqrt(inverse_of_m_e(q, w)), 0
     for seen in range(2):
         for j in range(n):
             share = 0.0
             for i in range(n):
                 share += q.normal[i] * w.shape[i, j]
-            if (abs(share) / math.sqrt(effective) > UNOBSERVABLE) == (seen == 1):
+            if (abs(share) / along > UNOBSERVABLE) == (seen == 1):
                 w.order[first] = j
                 first += 1
     for i in range(2 * n):
@@ -32,11 +31,15 @@ def set_frame(q, p, w):
         scale = scale if scale > SLOWEST * q.omega else q.omega
         p.frame_eta[m], p.frame_square[m], p.frame_scale[m] = eta, square, scale
         p.rounding = max(p.rounding, moved(eta, square, 0.5 * w.damping_error[j], w.square_error[j]))
+        for k in range(n):
+            w.row[k] = 0.0  # M psi_j
+            for i in range(n):
+                w.row[k] += q.M[k, i] * w.shape[i, j]
         for i in range(n):
             shape = dual = 0.0
             for k in range(n):
                 shape += p.P[i, k] * w.shape[k, j]
-                dual += p.back[k, i] * q.M[k, k] * w.shape[k, j]
+                dual += p.back[k, i] * w.row[k]
             p.to_frame[2 * m, 2 * i], p.to_frame[2 * m + 1, 2 * i] = scale * dual, eta * dual
             p.to_frame[2 * m + 1, 2 * i + 1] = dual
             p.from_frame[2 * i, 2 * m], p.from_frame[2 * i + 1, 2 * m] = shape / scale, -eta * shape / scale

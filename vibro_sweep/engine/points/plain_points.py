@@ -1,8 +1,8 @@
 """Points of plain oscillators, one after the other in a kernel.
 
-An oscillator is plain where its mass matrix is diagonal, damping is classical, no mode is in resonance without damping,
-no rate is far from that of the force, and states are measured from 0. Its points are those of `any_points` but for last
-digits, at a tenth of the time. By its modes,
+An oscillator is plain where damping is classical, no mode is in resonance without damping or far slower than the force,
+and states are measured from 0. Its points are those of `any_points` but for last digits, at a tenth of the time; where
+rates lie apart they are not in twice the digits. By its modes,
 
     psi_j^T M psi_k = delta_jk,    psi_j^T K psi_j = omega_j^2,    psi_j^T C psi_j = 2 eta_j            (eq. 5),
 
@@ -22,8 +22,7 @@ from vibro_sweep.engine.simd.jit import exported, jit
 
 APART = 8.0  # a rate over that of the force from which on tables are computed in twice the digits, where squares of
 UNEVEN = 1e-4  # natural frequencies lie farther apart than this, or masses have other coordinates
-FASTEST = 16.0  # rate over that of the force, and
-SLOWEST_SQUARE = 1e-10  # square of a natural frequency over that of the force, beyond which an oscillator is not plain
+SLOWEST_SQUARE = 1e-10  # square of a natural frequency over that of the force, below which an oscillator is not plain
 
 
 @functools.cache
@@ -39,8 +38,12 @@ def modes_of(masses: int) -> np.dtype:
     """What a point is set up from: modes, of which each column of a matrix is one, and room for sums."""
     n = masses
     fields = [
+        ("mass", (n, n)),  # L D L^T, as of symmetric.py
+        ("mobility", (n,)),  # M^-1 n
         ("K", (n, n)),  # in the metric of the masses, as C
         ("C", (n, n)),
+        ("K_terms", (n, n)),  # moduli of what their numbers are sums of
+        ("C_terms", (n, n)),
         ("A", (n, n)),  # scratch
         ("V", (n, n)),  # eigenvectors
         ("shape", (n, n)),  # psi_j
@@ -55,6 +58,7 @@ def modes_of(masses: int) -> np.dtype:
         ("rest", (n,)),  # the state at which the constant force is balanced
         ("compliance", (n,)),  # K^-1 n
         ("row", (n,)),  # scratch
+        ("back_low", (n, n)),  # of refined_equations.py
     ]
     return np.dtype([(name, float, shape) for name, shape in fields])
 
@@ -72,11 +76,10 @@ def set_plain_points(machines, points, known, modes, frames):
 
 @jit
 def set_plain_point(q, p, w, frames):
-    """Fill a point whose modes are known. Returns whether rates are near enough to that of the force, and no mode is in
-    resonance."""
+    """Fill a point whose modes are known. Returns whether no mode is in resonance or far slower than the force."""
+    set_coordinates(q, p, w)
     if not set_rate(q, p, w):
         return False
-    set_coordinates(q, p)
     set_equations(q, p, w)
     if not set_constrained(q, p, w) or not set_steady(q, p, w):
         return False
@@ -87,7 +90,7 @@ def set_plain_point(q, p, w, frames):
 
 @jit
 def set_rate(q, p, w):
-    """The rates of a point. Returns whether they, and natural frequencies, are near enough to that of the force."""
+    """The rates of a point, and whether they lie apart. Returns whether all that springs hold is fast enough."""
     omega, fastest, slowest, held, damping = q.omega, 0.0, np.inf, np.inf, 0.0  # slowest of all, of those that are held
     for j in range(len(w.square)):
         fastest, slowest = max(fastest, rate_of(w.square[j], w.damping[j])), min(slowest, w.square[j])
@@ -96,8 +99,18 @@ def set_rate(q, p, w):
     # what holds a mass takes stiffness and damping of all motion that is left from between those of the modes
     p.constrained_rate = max(fastest, rate_of(slowest, damping))
     p.rounding = 0.0
-    even = fastest <= APART * omega or slowest >= UNEVEN * fastest * fastest
-    return even and fastest <= FASTEST * omega and held > SLOWEST_SQUARE * omega * omega
+    own = not p.turned and is_diagonal(q.M)
+    p.apart = fastest > APART * omega and not (own and slowest >= UNEVEN * fastest * fastest)
+    return held > SLOWEST_SQUARE * omega * omega
+
+
+@jit
+def is_diagonal(matrix):
+    for i in range(len(matrix)):
+        for j in range(len(matrix)):
+            if i != j and matrix[i, j] != 0.0:
+                return False
+    return True
 
 
 @jit

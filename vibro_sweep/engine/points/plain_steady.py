@@ -2,6 +2,7 @@
 
 import math
 
+from vibro_sweep.engine.points.plain_coordinates import in_contact
 from vibro_sweep.engine.points.symmetric import factorise, solve
 from vibro_sweep.engine.simd.jit import jit
 
@@ -46,12 +47,8 @@ def set_steady(q, p, w):
             p.steady[2 * i] += p.P[i, k] * (w.turning[0, k] + w.rest[k])
             p.steady[2 * i + 1] -= p.P[i, k] * omega * w.turning[1, k]
         for j in range(n):
-            stiffness = mass = 0.0
-            for k in range(n):
-                mass += p.back[k, i] * q.M[k, k] * p.back[k, j]
-                for m in range(n):
-                    stiffness += p.back[k, i] * q.K[k, m] * p.back[m, j]
-            p.confining[2 * i, 2 * j], p.confining[2 * i + 1, 2 * j + 1] = compliance * stiffness, compliance * mass
+            p.confining[2 * i, 2 * j] = compliance * in_contact(p, q.K, i, j)
+            p.confining[2 * i + 1, 2 * j + 1] = compliance * in_contact(p, q.M, i, j)
     return True
 
 
@@ -70,11 +67,10 @@ def add_steady(q, w):
     """Add to the steady motion a sin + b cos what balances the force that is left beside it."""
     n, omega, a, b = len(q.M), q.omega, w.steady[0], w.steady[1]
     for i in range(n):
-        w.left[0, i] = q.sine[i] + omega * omega * q.M[i, i] * a[i]
-        w.left[1, i] = q.cosine[i] + omega * omega * q.M[i, i] * b[i]
+        w.left[0, i], w.left[1, i] = q.sine[i], q.cosine[i]
         for k in range(n):
-            w.left[0, i] -= q.K[i, k] * a[k] - omega * q.C[i, k] * b[k]
-            w.left[1, i] -= q.K[i, k] * b[k] + omega * q.C[i, k] * a[k]
+            w.left[0, i] += omega * omega * q.M[i, k] * a[k] - (q.K[i, k] * a[k] - omega * q.C[i, k] * b[k])
+            w.left[1, i] += omega * omega * q.M[i, k] * b[k] - (q.K[i, k] * b[k] + omega * q.C[i, k] * a[k])
     for j in range(n):
         # (7): xi = A_j sin + B_j cos, for a force of sine and of cosine
         detuning, damping = w.square[j] - omega * omega, w.damping[j] * omega
