@@ -46,8 +46,8 @@ class Firefox:
 
     def evaluate(self, expression):
         answer = self.running.command(
-            "script.evaluate", expression=f"JSON.stringify({expression})", target={"context": self.context},
-            awaitPromise=True,
+            "script.evaluate", expression=f"Promise.resolve({expression}).then((found) => JSON.stringify(found))",
+            target={"context": self.context}, awaitPromise=True,
         )  # fmt: skip
         assert answer["type"] == "success", answer
         return json.loads(answer["result"].get("value", "null"))

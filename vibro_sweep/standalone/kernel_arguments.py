@@ -138,10 +138,9 @@ def layout_of(kind: Kind) -> dict[str, Any]:
         ],
         "lane": orbit.fields["lane"][1],  # of each of the orbits side by side: its number is to be written there
         "machine": machine_of(n).itemsize // 8,
-        "point": {"size": point.itemsize}
-        | fields_of(point, "omega", "tau", "cells", "steady", "middle", "swing", "back"),
+        "point": {"size": point.itemsize} | fields_of(point, "tau", "cells", "P", "back"),
         "result": {"size": results.itemsize}
-        | fields_of(results.dtype, "status", "period", "lyapunov", "lyapunov_error", "end"),
+        | fields_of(results.dtype, "status", "period", "lyapunov", "lyapunov_error", "end", "resting"),
         "fill": results.tobytes().hex(),
         "batches": BATCHES,
         "warm_up": WARM_UP,

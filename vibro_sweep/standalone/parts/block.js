@@ -2,7 +2,7 @@
 // kernel (oscillator/own_time.py), and of the user's in all that comes in and goes out.
 
 import { numbersOf, powers, STOPS } from "./oscillator.js";
-import { steadyGap } from "./steady.js";
+import { restState, steadyGap } from "./steady.js";
 
 const SET_UP = 0, DIAGRAM = 1, TRAJECTORY = 2;
 const ROUND = 64; // sizes are multiples of this
@@ -32,9 +32,8 @@ function setUp(kernel, each, plan) {
   kernel.call();
   const known = new Uint8Array(kernel.memory.buffer, kernel.place.known.at, m).slice();
   const { at } = kernel.place.points, { size, cells: [cells] } = layout.point;
-  machines.forEach((numbers, i) => { // rest is held by a stop where 0 is behind it, and states are counted from elsewhere
-    const unknown = follows[i] && steady[i] === undefined; // its phase
-    if (numbers[STOPS] <= 0 && numbers[STOPS + 1] >= 0 && !unknown) return;
+  machines.forEach((numbers, i) => { // its phase and rest are known, too
+    if (!(follows[i] && steady[i] === undefined) && restState(numbers)) return;
     kernel.view.setBigInt64(at + i * size + cells, 0n, true);
     known[i] = 0;
   });
@@ -115,9 +114,27 @@ export function diagram(kernel, { each, starts, plan, chain, begun }) {
   };
 }
 
+// the end of an orbit in contact coordinates, behind no rigid stop, and at one where it rests (driver/energy_columns.py)
+function beginAtContact(kernel) {
+  const { layout } = kernel, N = layout.masses, { at } = kernel.place.results, [offset] = layout.result.end;
+  let [low, high] = kernel.floats("stops", 2);
+  if (layout.compliant && kernel.floats("laws", 6)[0] > 0) low = -Infinity;
+  if (layout.compliant && kernel.floats("laws", 6)[3] > 0) high = Infinity;
+  const side = resultOf(kernel, 0, "resting"), wall = side > 0 ? high : low, rests = side !== 0 && Number.isFinite(wall);
+  const state = Array.from({ length: 2 * N }, (_, j) => {
+    let sum = 0;
+    for (let i = 0; i < N; i++) sum += pointOf(kernel, 0, "P", Math.floor(j / 2) * N + i) * resultOf(kernel, 0, "end", 2 * i + (j % 2));
+    return sum;
+  });
+  state[0] = rests ? wall : Math.min(Math.max(state[0], low), high);
+  if (rests) state[1] = 0;
+  state.forEach((value, j) => kernel.view.setFloat64(at + offset + 8 * j, value, true));
+}
+
 // the motion of the orbit that `diagram` has just computed alone, over so many periods more
 export function motion(kernel, each, plan, periods, samples) {
   const { layout } = kernel, N = layout.masses, states = 2 * N, rate = 2 ** Math.round(Math.log2(each.omega));
+  beginAtContact(kernel);
   kernel.set("task", TRAJECTORY);
   kernel.set("plan.periods", periods);
   kernel.set("plan.lyapunov", false);
@@ -126,6 +143,8 @@ export function motion(kernel, each, plan, periods, samples) {
   kernel.shape("kept.samples", 1, 1, samples, states);
   kernel.shape("kept.sections", 1, 1, periods + 1, states);
   kernel.call();
+  const status = resultOf(kernel, 0, "status");
+  if (status !== 0) return { status };
   const back = Array.from({ length: N * N }, (_, n) => pointOf(kernel, 0, "back", n));
   const masses = (state) => { // of a state in contact coordinates
     const found = new Array(states);
@@ -148,5 +167,5 @@ export function motion(kernel, each, plan, periods, samples) {
     points.push({ t: t * T, state: masses([stop, before, ...others]) }, { t: t * T, state: masses([stop, after, ...others]) });
   }
   points.sort((a, b) => a.t - b.t);
-  return { t: Float32Array.from(points, (one) => one.t), states: Float32Array.from(points.flatMap((one) => one.state)), impacts, count };
+  return { status, t: Float32Array.from(points, (one) => one.t), states: Float32Array.from(points.flatMap((one) => one.state)), impacts, count };
 }

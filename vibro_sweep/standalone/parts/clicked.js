@@ -14,6 +14,7 @@ export function orbitOf(kernel, task, diagram, motion) {
   if (!found.known[0] || (found.status[0] !== 0 && found.status[0] !== task.notSettled)) return { words, arrays };
   const shown = period ? Math.min(period, MOST_SHOWN) : UNSETTLED, whole = period && period <= LONGEST ? period : shown;
   const samples = Math.min(SAMPLES * whole, 2400) + 1, flight = motion(kernel, v, task.plan, whole, samples);
+  if (flight.status !== 0) return { words: { ...words, status: flight.status }, arrays };
   const inside = flight.t.findLastIndex((t) => t <= shown * T * (1 + 1e-9)) + 1;
   arrays.t = flight.t.slice(0, inside);
   arrays.states = flight.states.slice(0, inside * 2 * kernel.layout.masses);

@@ -1,6 +1,7 @@
 // What stands on the vertical axis, from the section points of the masses.
 
 import { MASSES, NORMAL, numbersOf, STOPS } from "./oscillator.js";
+import { restState } from "./steady.js";
 
 export const heightOf = {
   // the stops, the normal of the gap and which stops are compliant, of an oscillator with these numbers
@@ -8,6 +9,9 @@ export const heightOf = {
     const numbers = numbersOf(v), [low, high, , , k_low, , , k_high] = numbers.slice(STOPS);
     return { low, high, normal: numbers.slice(NORMAL, NORMAL + MASSES), pressed: [k_low > 0, k_high > 0] };
   },
+
+  // positions of the masses at rest; none where they are not known
+  rest: (v) => restState(numbersOf(v)) ?? [],
 
   // one number for each section point
   values(y, sections, v) {

@@ -237,23 +237,30 @@ class Diagram {
   startAt(column, start) {
     const { start: from } = this.scene, N = this.page.layout.masses;
     if (from.random) return this.drawn(column, start);
-    return Array.from({ length: 2 * N }, (_, j) => from[`${j % 2 ? "v" : "x"}${1 + Math.floor(j / 2)}`] ?? 0);
+    const state = Array.from({ length: 2 * N }, (_, j) => from[`${j % 2 ? "v" : "x"}${1 + Math.floor(j / 2)}`]);
+    const rest = state.some((x) => x !== undefined) ? [] : heightOf.rest(this.at(column));
+    return state.map((x, j) => x ?? (j % 2 ? 0 : (rest[j / 2] ?? 0)));
   }
 
   // a random state with the gap between the stops; its numbers follow from the seed, the column and the start
   drawn(column, start) {
     const v = this.at(column), { low, high, normal } = heightOf.stops(v), b = Math.abs(v.b), { seed = 0, box = {} } = this.scene.start;
     const draw = generator([seed, column, start]), N = this.page.layout.masses;
+    const middle = v.b >= 0 ? (v.offset ?? 0) : high < Infinity ? high - b : low + b;
+    let state, gap;
     for (let attempt = 0; attempt < 100; attempt++) {
-      const state = Array.from({ length: 2 * N }, (_, j) => {
+      state = Array.from({ length: 2 * N }, (_, j) => {
         const share = 2 * draw() - 1, range = box[`${j % 2 ? "v" : "x"}${1 + Math.floor(j / 2)}`];
         if (range) return range[0] + ((share + 1) / 2) * (range[1] - range[0]);
-        return j % 2 ? share * v.omega * b : (v.offset ?? 0) + share * b;
+        return j % 2 ? share * v.omega * b : middle + share * b;
       });
-      const gap = normal.reduce((sum, n, i) => sum + n * state[2 * i], 0);
+      gap = normal.reduce((sum, n, i) => sum + n * state[2 * i], 0);
       if (gap >= low && gap <= high) return state;
     }
-    return Array(2 * N).fill(0);
+    // the masses lie around the middle of the stops, their gap does not: it is moved there
+    const bottom = Math.max(low, high - 2 * b), top = Math.min(high, low + 2 * b), size = normal.reduce((sum, n) => sum + n * n, 0);
+    const by = ((bottom < top ? bottom + draw() * (top - bottom) : middle) - gap) / size;
+    return state.map((x, j) => (j % 2 ? x : x + by * normal[j / 2]));
   }
 
   // where orbits have ended, and how many could not be set up
