@@ -42,11 +42,14 @@ class Equations:
     def __init__(self, q):
         import heyoka as hy
 
-        self.hy, self.q, self.N = hy, q, len(q.normal)
-        walls = ((1, q.high, q.k_high, q.c_high, q.p_high), (-1, q.low, q.k_low, q.c_low, q.p_low))
+        self.hy, self.q, self.N = hy, q, q.masses
+        walls = (
+            (1, q.contact.high, q.contact.k_high, q.contact.c_high, q.contact.p_high),
+            (-1, q.contact.low, q.contact.k_low, q.contact.c_low, q.contact.p_low),
+        )
         self.stops = [stop for stop in walls if math.isfinite(stop[1])]
         self.rigid = not any(stop[2] for stop in self.stops)
-        self.relaxes = bool(q.by_force and q.c_high > 0)
+        self.relaxes = bool(q.contact.by_force and q.contact.c_high > 0)
         names = [f"{kind}{i}" for i in range(self.N) for kind in "xv"]
         names += [f"s{n}" for n in range(len(self.stops))] if self.relaxes else []
         self.z = hy.make_vars(*names)
@@ -104,8 +107,8 @@ def heyoka(system, states, tol=1e-16, lanes=8, events=True, exponents=False) -> 
     """Orbits from `states` (8, 2 N), one of them alone if lanes is 1; with tangent vectors if `exponents`."""
     q, touched = system.linear, []
     equations = Equations(q)
-    hy, T, size = equations.hy, 2 * np.pi / q.omega, 2 * len(q.normal)
-    rates, R = equations.rates(), q.R_high
+    hy, T, size = equations.hy, 2 * np.pi / q.omega, 2 * q.masses
+    rates, R = equations.rates(), q.contact.R_high
     variables = len(rates)
     if exponents:
         rates = hy.var_ode_sys(rates, hy.var_args.vars, order=1)

@@ -91,7 +91,7 @@ def test_discontinuity_mapping_of_the_paper_by_its_matrices():
     system = vs.System(**numbers)
     q = system.linear
     same = vs.Oscillator(
-        q.M, q.K, q.C, contact_normal=q.normal, force=q.sine, force_cos=q.cosine, omega=0.63, R=0.8, b=6.25
+        q.M, q.K, q.C, contact_normal=q.contact.normal, force=q.sine, force_cos=q.cosine, omega=0.63, R=0.8, b=6.25
     )
     one, other = vs.discontinuity_map(system, 2), vs.discontinuity_map(same, 2)
     X = one.graze + np.array([0.2, 0.3, -0.1, 0.1])

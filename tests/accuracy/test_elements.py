@@ -138,6 +138,25 @@ def test_more_elements_than_phases_can_name_are_refused():
         engine_machine(machine)
 
 
+def test_several_contacts_of_an_oscillator_move_as_the_reference_has_them():
+    """The list of an oscillator's contacts, rigid and compliant ones, is that of the machine."""
+    contacts = [
+        vs.Contact([1, 0], b=0.3, R=0.8, R_left=0.9),
+        vs.Contact([-1, 1], b=0.2, offset=0.05, stops="right", k_stop=50.0, c_stop=0.5, preload=0.1),
+    ]
+    system = vs.Oscillator([[1, 0], [0, 2]], [[2, -1], [-1, 1]], force=[1, 0], omega=0.8, tau=0.3, contacts=contacts)
+    same = Machine(
+        [[1, 0], [0, 2]], [[2, -1], [-1, 1]], [[0, 0], [0, 0]], [0, 0], (Harmonic(1, [1, 0], [0, 0]),), 0.8, 0.3,
+        (
+            Contact([1.0, 0.0], (Stop(1, 0.3, R=0.8), Stop(-1, -0.3, R=0.9))),
+            Contact([-1.0, 1.0], (Stop(1, 0.25, k=50.0, c=0.5, p=0.1),)),
+        ),
+    )  # fmt: skip
+    for one, other in zip(machine_of_system(system)[0], engine_machine(same)[0], strict=True):
+        np.testing.assert_array_equal(one, other)
+    assert len(orbit_of(machine_of_system(system), [0.0, 0, 0, 0], 20.0).events) > 10
+
+
 @pytest.mark.parametrize(
     "law",
     [{"R": 0.8}, {"k_stop": 1e4}, {"k_stop": 1e4, "c_stop": 5, "release": "force"}, {"k_stop": 50, "preload": 0.2}],

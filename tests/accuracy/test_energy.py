@@ -40,8 +40,8 @@ def test_against_dense_samples(name):
         times = (TRANSIENT + np.arange(200 * 1000 + 1) / (10 * 1000)) * T
         states = orbit.sample(np.minimum(times, orbit.section_times[-1]))
         hits = orbit.impacts[orbit.impacts["t"] > TRANSIENT * T]
-        mass = 1 / (q.normal @ np.linalg.solve(q.M, q.normal))
-        R = np.where(hits["side"] > 0, q.R_high, q.R_low)
+        mass = 1 / (q.contact.normal @ np.linalg.solve(q.M, q.contact.normal))
+        R = np.where(hits["side"] > 0, q.contact.R_high, q.contact.R_low)
         loss = (0.5 * mass * (1 - R**2) * hits["v1"] ** 2).sum() / span
         assert data["impact_power"][i] == pytest.approx(loss, rel=1e-7, abs=1e-15)
         jumps = len(hits) / len(times)  # of a velocity, each within one step of the samples

@@ -21,7 +21,7 @@ def test_other_coordinates(masses):
     q = system.linear
     S = np.linalg.inv(np.random.default_rng(5).normal(size=(masses, masses)) + 2 * np.eye(masses))  # x = S y
     same = vs.Oscillator(
-        *(S.T @ matrix @ S for matrix in (q.M, q.K, q.C)), contact_normal=S.T @ q.normal,
+        *(S.T @ matrix @ S for matrix in (q.M, q.K, q.C)), contact_normal=S.T @ q.contact.normal,
         force=S.T @ q.sine, force_cos=S.T @ q.cosine, constant=S.T @ q.constant,
         omega=system.omega, tau=system.tau, b=system.b, offset=system.offset, R=system.R, R_left=system.R_left,
     )  # fmt: skip
@@ -125,7 +125,16 @@ def test_the_paper_by_its_matrices():
     paper = vs.System(mu_m=1e-4, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=1.0, tau=0.3)
     q = paper.linear
     same = vs.Oscillator(
-        q.M, q.K, q.C, contact_normal=q.normal, force=q.sine, force_cos=q.cosine, omega=0.63, R=0.8, b=1.0, tau=0.3
+        q.M,
+        q.K,
+        q.C,
+        contact_normal=q.contact.normal,
+        force=q.sine,
+        force_cos=q.cosine,
+        omega=0.63,
+        R=0.8,
+        b=1.0,
+        tau=0.3,
     )
     one, other = (vs.simulate(system, np.zeros(4), 10).impacts for system in (paper, same))
     assert len(one) == len(other) > 10

@@ -38,15 +38,15 @@ def test_thousands_of_series_in_a_flight_that_begins_within_a_cell():
     """No closed form helps before the next node."""
     system, state, _ = drawn_stiff(255)
     q, hit = system.linear, vs.simulate(system, state, 4).impacts[2]
-    push = np.linalg.solve(q.M, q.normal)
-    push *= (1 + (q.R_high if hit["side"] > 0 else q.R_low)) * hit["v1"] / (q.normal @ push)
+    push = np.linalg.solve(q.M, q.contact.normal)
+    push *= (1 + (q.contact.R_high if hit["side"] > 0 else q.contact.R_low)) * hit["v1"] / (q.contact.normal @ push)
     after = np.stack([hit["x"], hit["xdot"] - push], -1).ravel()
     found = vs.simulate(system, after, 1, hit["t"]).impacts[0]
     elapsed, side = found["t"] - hit["t"], found["side"]
 
     def zero(q, x, shift):
-        wall = (q.high if side > 0 else q.low) + shift
-        return first_zero(Flight(q), list(q.normal), wall, [*x[0::2], *x[1::2]], hit["t"], elapsed)
+        wall = (q.contact.high if side > 0 else q.contact.low) + shift
+        return first_zero(Flight(q), list(q.contact.normal), wall, [*x[0::2], *x[1::2]], hit["t"], elapsed)
 
     assert elapsed < 0.01
     assert time_in_units(system, after, hit["t"], elapsed, zero) < 1.5
@@ -183,8 +183,8 @@ def first_six(system, state, seed) -> int:
     """How many of the first impacts, which are as exact as rounding allows, are compared; none is missed later on."""
     orbit = vs.simulate(system, state, 3)
     q, states = system.linear, orbit.sample(np.linspace(0, 3 * system.period, 5001))
-    gaps = states[:, 0::2] @ q.normal
-    assert max(gaps.max() - q.high, q.low - gaps.min()) <= 1e-9 * np.abs(states[:, 0::2]).max()
+    gaps = states[:, 0::2] @ q.contact.normal
+    assert max(gaps.max() - q.contact.high, q.contact.low - gaps.min()) <= 1e-9 * np.abs(states[:, 0::2]).max()
     hits = orbit.impacts[:6]
     assert orbit.status == "ok"
     end = None if len(hits) == 6 else 3 * system.period

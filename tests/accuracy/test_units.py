@@ -15,7 +15,9 @@ NAMES, BOX = ("b", "omega"), ((0.3, 9), (0.5, 0.8))
 def pitchforks():
     """Orbits of the paper's oscillator at a pitchfork, as of an oscillator whose force is a length too; and curves."""
     q = PAPER.replace(b=5.0).linear
-    numbers = dict(M=q.M, K=q.K, C=q.C, contact_normal=q.normal, force=q.sine, omega=q.omega, R=q.R_high, tau=q.tau)
+    numbers = dict(
+        M=q.M, K=q.K, C=q.C, contact_normal=q.contact.normal, force=q.sine, omega=q.omega, R=q.contact.R_high, tau=q.tau
+    )
     orbit = vs.periodic_orbit(vs.Oscillator(**numbers, b=5.0), itinerary="LR")
     return [orbit_in(orbit, k) for k in (0, *EXPONENTS)]
 
@@ -34,7 +36,9 @@ def test_what_begins_where_a_pitchfork_meets_a_graze():
     """The asymmetric orbits graze with one half; of the distance of the other, which touches too, rounding is left."""
     system = vs.System(mu_m=1.5, mu_k=2.65, zeta=0.08, f2=0, omega=1.58, R=0.45, b=1.0)
     star, q = vs.grazing(system).b, system.linear
-    numbers = dict(M=q.M, K=q.K, C=q.C, contact_normal=q.normal, force=q.sine, omega=q.omega, R=q.R_high, tau=q.tau)
+    numbers = dict(
+        M=q.M, K=q.K, C=q.C, contact_normal=q.contact.normal, force=q.sine, omega=q.omega, R=q.contact.R_high, tau=q.tau
+    )
     orbit = vs.periodic_orbit(vs.Oscillator(**numbers, b=0.5 * star), itinerary="LR")
     report = new_report()
     pair = Pair(report, "pitchfork and graze", 40, True)

@@ -61,7 +61,7 @@ def test_critical_direction_of_a_pitchfork():
 @pytest.mark.parametrize("system", [PAPER, *slow_cases(CHAIN.replace(b=0.2))])
 def test_closure_has_the_multipliers(system, count):
     solution = vs.periodic_orbit(system, itinerary="LR")._solution.whole().repeated(count)
-    linearised, n = Linearised(solution), 2 * len(solution.family.linear.normal)
+    linearised, n = Linearised(solution), 2 * solution.family.linear.masses
     one, other = linearised.closure(1), linearised.closure(-1)
     values = eigvals(one + other, other - one)
     largest = max(solution.multipliers, key=abs)
@@ -76,8 +76,8 @@ def test_multipliers_at_a_small_restitution(R):
     q, v, a = s.family.linear, *s.motion[0, :2]
     inverse, zero = np.linalg.inv(q.M), np.zeros(2)
     A = np.block([[np.zeros((2, 2)), np.eye(2)], [-inverse @ q.K, -inverse @ q.C]])
-    e_g, e_s = np.append(q.normal, zero), np.append(zero, q.normal)
-    e_v = np.append(zero, inverse @ q.normal / (q.normal @ inverse @ q.normal))
+    e_g, e_s = np.append(q.contact.normal, zero), np.append(zero, q.contact.normal)
+    e_v = np.append(zero, inverse @ q.contact.normal / (q.contact.normal @ inverse @ q.contact.normal))
     S = np.eye(4) - (1 + R) * (np.outer(e_v, e_s) + np.outer(A @ e_v, e_g) - a / v * np.outer(e_v, e_g))
     expected = np.linalg.eigvals(s.sigma * expm(A * s.P) @ S)
     expected = expected[np.lexsort((-expected.imag, -np.abs(expected)))]

@@ -131,7 +131,7 @@ def test_points_of_coupled_modes_have_all_but_frames():
         wanted = any_points._other_points(q, any_points.kind_of(q), True)
         machine, point = np.zeros(1, machine_of(n)), np.zeros(1, wanted.dtype)
         for name in machine.dtype.names:
-            machine[name] = getattr(q, name)
+            machine[name] = getattr(q.contact if name == "normal" else q, name)
         assert set_any_point(machine, point, np.empty(1, modes_of(n)))
         assert np.isnan(point["to_frame"]).all() and np.isinf(point["swing"][0])
         for name in ("stiffness", "damping", "force", "constrained", "push", "P", "back", "divergence"):
@@ -156,12 +156,13 @@ def test_equations_of_rates_apart_are_those_in_fractions():
         k, c, m = 10 ** rng.uniform(-2, 5, n + 1), 10 ** rng.uniform(-3, 2, n + 1), rng.uniform(0.5, 2, n)
         chain = vs.Oscillator.named("chain", m=m, k=k, c=c, force=rng.normal(size=n), omega=1.0, b=1, R=0.8).linear
         normal = rng.normal(size=n)
-        q = stacked([chain._replace(normal=normal, M=chain.M + (rng.random() < 0.5) * np.outer(normal, normal))])
+        M = chain.M + (rng.random() < 0.5) * np.outer(normal, normal)
+        q = stacked([chain._replace(M=M).with_contact(normal=normal)])
         contact = ContactCoordinates(*(one[0] for one in contact_coordinates(q)))
         rounded, left = exact_motion(selected(q, 0), contact)
         machine, point = np.zeros(1, machine_of(n)), np.zeros(1, point_of(any_points.kind_of(q)))
         for name in machine.dtype.names:
-            machine[name] = getattr(q, name)
+            machine[name] = getattr(q.contact if name == "normal" else q, name)
         assert refine_any_point(machine, point, np.empty(1, modes_of(n)))
         assert point["apart"][0] == (point["rate"][0] > 8.0)
         high = np.hstack([-point["stiffness"][0], -point["damping"][0], point["force"][0]])

@@ -111,9 +111,9 @@ from vibro_sweep.tables.quantity import POSITIVE, Parameter
 
 def pendulum(*, length, omega, tau, **stops) -> Linear:
     return Linear(
-        M=matrix([[1]]), K=matrix([[1 / np.asarray(length)]]), C=np.zeros((1, 1)), normal=np.ones(1),
+        M=matrix([[1]]), K=matrix([[1 / np.asarray(length)]]), C=np.zeros((1, 1)),
         constant=np.zeros(1), sine=np.ones(1), cosine=np.zeros(1), omega=omega,
-        tau=None if isinstance(tau, str) else tau, **contact(**stops),
+        tau=None if isinstance(tau, str) else tau, contacts=[contact(np.ones(1), **stops)],
     )
 
 

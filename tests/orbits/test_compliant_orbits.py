@@ -28,7 +28,7 @@ def in_thirty_digits(orbit):
     order = np.argsort(t)
     times = np.column_stack([t, t + contacts["t_release"] - contacts["t_touch"]])[order].ravel()
     q = orbit.system.linear
-    pulled = bool(np.all(q.c_high * contacts["v_release"] + q.p_high < 0))
+    pulled = bool(np.all(q.contact.c_high * contacts["v_release"] + q.contact.p_high < 0))
     machine = machine_of(q)
     exact = ClosedOrbit(machine, contacts_of(machine, contacts["side"][order], pulled), orbit.period)
     state, known = exact.solve(orbit.state, times)

@@ -10,7 +10,7 @@ import vibro_sweep as vs
 
 
 def attractor(system, state=None):
-    start = np.zeros(2 * len(system.linear.normal)) if state is None else state
+    start = np.zeros(2 * system.linear.masses) if state is None else state
     section = vs.simulate(system, start, 2000).section
     periods = next(n for n in range(1, 30) if np.abs(section[-1] - section[-1 - n]).max() < 1e-9)
     return vs.periodic_orbit(system, state=section[-1], periods=periods)

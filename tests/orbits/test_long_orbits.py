@@ -84,9 +84,9 @@ def test_newton_finds_a_long_orbit(system):
     far = replace(long, u=long.u * (1 + 0.3 * rng.normal(size=len(long.u)))).corrected()
     if far is not None:
         q, states = far.family.linear, far.states
-        assert np.abs(states[:, 0] - q.stop(far.sides)).max() < 1e-9
-        one_plus_R = 1 + q.restitution(far.sides)
-        assert np.abs(far.jumps + one_plus_R * states[:, len(q.normal)]).max() < 1e-9
+        assert np.abs(states[:, 0] - q.contact.stop(far.sides)).max() < 1e-9
+        one_plus_R = 1 + q.contact.restitution(far.sides)
+        assert np.abs(far.jumps + one_plus_R * states[:, q.masses]).max() < 1e-9
 
 
 # from random sweeps of chains of three: system, its swept number, period, bounds, a state of the recorded orbit

@@ -156,7 +156,7 @@ def test_bouncing_ball_in_closed_form(n, R):
 def test_motion_obeys_the_equation_of_motion(family):
     """M x'' + C x' + K x = force along flights, by differences of `sample`; the impact law; periodicity."""
     q = family.linear
-    orbit = vs.periodic_orbit(family, itinerary="LR" if np.isfinite(q.low) else "R")
+    orbit = vs.periodic_orbit(family, itinerary="LR" if np.isfinite(q.contact.low) else "R")
     assert orbit.ok
     times = np.linspace(0.05, 2 * math.pi / q.omega * orbit.period, 40)
     h = 1e-4
@@ -172,8 +172,10 @@ def test_motion_obeys_the_equation_of_motion(family):
     for impact in orbit.impacts:
         t = impact["t"]
         jump = orbit.sample([t + 1e-9])[0, 1::2] - orbit.sample([t])[0, 1::2]
-        assert q.normal @ jump == pytest.approx(-(1 + q.restitution(impact["side"])) * impact["v1"], abs=1e-7)
-        assert np.linalg.matrix_rank(np.array([q.M @ jump, q.normal]), tol=1e-6) == 1
+        assert q.contact.normal @ jump == pytest.approx(
+            -(1 + q.contact.restitution(impact["side"])) * impact["v1"], abs=1e-7
+        )
+        assert np.linalg.matrix_rank(np.array([q.M @ jump, q.contact.normal]), tol=1e-6) == 1
     length = orbit.period * 2 * math.pi / q.omega
     assert orbit.sample(times + length) == pytest.approx(orbit.sample(times), abs=1e-12)
 

@@ -151,4 +151,4 @@ def test_an_own_pitchfork_of_an_orbit_with_a_free_mode_is_the_orbit(tmp_path):
         assert end.orbit.symmetric and np.abs(end.orbit.half_multipliers + 1).min() < 1e-9
         whole, half = end.orbit._solution.whole(), end.orbit._solution
         assert np.array_equal(whole.times[: half.K], half.times) and np.array_equal(whole.jumps[: half.K], half.jumps)
-        assert np.abs(whole.states[:, 0] - whole.family.linear.stop(whole.sides)).max() < 1e-12
+        assert np.abs(whole.states[:, 0] - whole.family.linear.contact.stop(whole.sides)).max() < 1e-12

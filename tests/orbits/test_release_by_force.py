@@ -36,7 +36,7 @@ def touching_in_digits(special):
     with mp.workdps(DIGITS):
         M = ClosedOrbit(machine_of(q), [], 1).closure([0, 0], [])
         jump = mp.eye(2)
-        jump[1, 0] = -mpf(float(q.c_high)) / mpf(float(q.M[0, 0]))
+        jump[1, 0] = -mpf(float(q.contact.c_high)) / mpf(float(q.M[0, 0]))
         return np.sort_complex(np.array(mp.eig(jump * M, left=False, right=False), complex))
 
 

@@ -100,7 +100,7 @@ def test_acceleration_into_the_stop_is_that_of_sampled_states(b):
     t = np.linspace(begin + 1e-9, end, 4001)
     states, angle = orbit.sample(t), q.omega * t + q.tau
     force = q.constant + np.outer(np.sin(angle), q.sine) + np.outer(np.cos(angle), q.cosine)
-    a = side * (force - states[:, ::2] @ q.K - states[:, 1::2] @ q.C) @ np.linalg.inv(q.M) @ q.normal
+    a = side * (force - states[:, ::2] @ q.K - states[:, 1::2] @ q.C) @ np.linalg.inv(q.M) @ q.contact.normal
     turns = np.flatnonzero((a[1:-1] < a[:-2]) & (a[1:-1] < a[2:])) + 1
     assert np.append(a[turns], a[0]).min() > 0
     assert abs(a[-1]) < 1e-12

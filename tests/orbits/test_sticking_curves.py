@@ -52,18 +52,18 @@ def error_at(special) -> float:
     s, q, state, end = numbers_at(special)
 
     def machine_at(b):
-        return machine_of(q._replace(high=b, low=-b))
+        return machine_of(q.with_contact(high=b, low=-b))
 
     with mp.workdps(34):
         chatter = Chatter(machine_at, s.sigma, s.half_periods, s.sides[1:])
-        exact = chatter.where_sticking(state, end, s.times[1:], q.high)
-    return abs(float(exact) - q.high) / max(q.high, abs(steady_gap(q).swing))
+        exact = chatter.where_sticking(state, end, s.times[1:], q.contact.high)
+    return abs(float(exact) - q.contact.high) / max(q.contact.high, abs(steady_gap(q).swing))
 
 
 def test_stated_errors(symmetric_onset, one_mass_onset):
     for special in (symmetric_onset, one_mass_onset):
         _, q, _, _ = numbers_at(special)
-        true = error_at(special) * max(q.high, abs(steady_gap(q).swing))
+        true = error_at(special) * max(q.contact.high, abs(steady_gap(q).swing))
         assert true < special.error < 2e-13
 
 
@@ -117,7 +117,7 @@ def test_simulated_orbits_rest_on_one_side_of_the_curve(one_mass_onset):
             _, q, (x, v), time = numbers_at(end)
             rests = []
             for side in (-1e-7, 1e-7):
-                system = wall(b=q.high * (1 + side), omega=q.omega)
+                system = wall(b=q.contact.high * (1 + side), omega=q.omega)
                 run = vs.simulate(system, (x * (1 - 1e-6), -abs(v)), 300, start_time=time)
                 rests.append(int(np.sum(run.sticking["t_on"] > 250 * 2 * math.pi / q.omega + time)))
             assert rests == [50, 0], end.parameters

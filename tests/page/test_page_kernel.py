@@ -4,6 +4,7 @@ import lzma
 import math
 import subprocess
 import sys
+from operator import attrgetter
 from types import SimpleNamespace
 
 import numpy as np
@@ -53,7 +54,7 @@ def test_formulas_are_those_of_the_model(system):
     for factor in (1.0, 0.83):
         other = system.replace(omega=factor * system.omega, b=1.1 * factor * system.b)
         q = in_own_time(other.linear, rate_of(other.omega))
-        wanted = [np.ravel(getattr(q, name)) for name in (*MOTION, *STOPS, *LAWS)]
+        wanted = [np.ravel(attrgetter(name)(q)) for name in (*MOTION, *STOPS, *LAWS)]
         found = evaluated(other)
         tau = sum(len(one) for one in wanted[: len(MOTION) - 1])
         found[tau] = wanted[len(MOTION) - 1][0]  # a phase that follows is found by the page
@@ -75,7 +76,7 @@ def test_formulas_are_those_of_the_model(system):
 )
 def test_a_model_that_computes_with_more_has_no_formulas(place):
     """A branch is one more: its formulas would be right of some numbers alone."""
-    family = vs.types.Family(lambda b: PAPER.linear._replace(high=place(b)), {"b": 1.0})
+    family = vs.types.Family(lambda b: PAPER.linear.with_contact(high=place(b)), {"b": 1.0})
     assert formulas_of(SimpleNamespace(family=family, described={})) is None
 
 
@@ -106,7 +107,7 @@ def block(kernel, kind, systems, start) -> Memory:
     memory.array("stops")[:] = numbers[:, width : width + 4].ravel()
     if kind.compliant:
         memory.array("laws")[:] = numbers[:, width + 4 :].ravel()
-    memory.values |= {"release": int(systems[0].linear.by_force), "task": SET_UP, "plan.lyapunov": True}
+    memory.values |= {"release": int(systems[0].linear.contact.by_force), "task": SET_UP, "plan.lyapunov": True}
     kernel.call(memory)
     assert memory.array("known", bool).all()
     starts = memory.array("starts").reshape(2, m, states + 3)

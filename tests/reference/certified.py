@@ -214,8 +214,8 @@ def of_paper(params, digits=40):
 def of_masses(q, digits=40):
     """Any oscillator (`Linear`), in the coordinates of its masses."""
     with mp.workdps(digits):
-        size = 2 * len(q.normal) + 3  # without the places of stops, which do not move the masses
+        size = 2 * q.masses + 3  # without the places of stops, which do not move the masses
         A = matrix_of(machine_of(q))[:size, :size]
         along = [mpf(0)] * A.rows
-        along[0 : 2 * len(q.normal) : 2] = map(mpf, q.normal)
+        along[0 : 2 * q.masses : 2] = map(mpf, q.contact.normal)
         return Reference(A, along, mpf(q.omega), mpf(q.tau), digits)

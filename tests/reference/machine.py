@@ -105,12 +105,6 @@ def elements_of(machine: Machine) -> list[Element]:
 
 def machine_of(linear) -> Machine:
     """The machine of a `vs.types.Linear`, or of anything with the same names."""
-    stops = []
-    for side, end in ((1, "high"), (-1, "low")):
-        place, R, k, c, p = (getattr(linear, f"{name}{end}", 0.0) for name in ("", "R_", "k_", "c_", "p_"))
-        if not math.isinf(place):
-            law = {"k": k, "c": c, "p": p, "by_force": bool(linear.by_force)} if k > 0 else {"R": R}
-            stops.append(Stop(side, place, **law))
     rows = {name: [list(row) for row in getattr(linear, name)] for name in "MKC"}
     return Machine(
         **rows,
@@ -118,19 +112,47 @@ def machine_of(linear) -> Machine:
         harmonics=(Harmonic(1, list(linear.sine), list(linear.cosine)),),
         omega=linear.omega,
         tau=linear.tau,
-        contacts=(Contact(list(linear.normal), tuple(stops)),),
+        contacts=tuple(Contact(list(one.normal), stops_of(one)) for one in linear.contacts),
     )
+
+
+def stops_of(contact) -> tuple[Stop, ...]:
+    """The stops of a `vs.types.LinearContact`, or of anything with the same names."""
+    stops = []
+    for side, end in ((1, "high"), (-1, "low")):
+        place, R, k, c, p = (getattr(contact, f"{name}{end}", 0.0) for name in ("", "R_", "k_", "c_", "p_"))
+        if not math.isinf(place):
+            law = {"k": k, "c": c, "p": p, "by_force": bool(contact.by_force)} if k > 0 else {"R": R}
+            stops.append(Stop(side, place, **law))
+    return tuple(stops)
+
+
+def mapped(function, *linears):
+    """A `vs.types.Linear` with other numbers: `function(name, ...)` of those of these, those of its contacts too."""
+
+    def of(*records):
+        names = [name for name in records[0]._fields if name != "contacts"]
+        return SimpleNamespace(**{name: function(name, *(getattr(one, name) for one in records)) for name in names})
+
+    result = of(*linears)
+    return with_contacts(result, [of(*each) for each in zip(*(one.contacts for one in linears), strict=True)])
+
+
+def with_contacts(numbers, contacts):
+    """Numbers of an oscillator with these contacts, by the names of a `vs.types.Linear`."""
+    numbers.contacts, numbers.contact, numbers.masses = contacts, contacts[0], len(numbers.M)
+    return numbers
 
 
 def moved(linear, slopes, changes):
     """A `vs.types.Linear`, moved by these changes along its derivatives: exact to their squares."""
-    numbers = {}
-    for name, value in linear._asdict().items():
-        terms = [(mpf(d), getattr(slope, name)) for d, slope in zip(changes, slopes, strict=True)]
+
+    def of(name, value, *slopes_of_it):
+        terms = [(mpf(d), slope) for d, slope in zip(changes, slopes_of_it, strict=True)]
         if name == "by_force":
-            numbers[name] = bool(value)
-        elif isinstance(value, np.ndarray):
-            numbers[name] = value.astype(object) + sum(d * slope.astype(object) for d, slope in terms)
-        else:
-            numbers[name] = mpf(value) + sum((d * mpf(float(slope)) for d, slope in terms if slope), mpf(0))
-    return SimpleNamespace(**numbers)
+            return bool(value)
+        if isinstance(value, np.ndarray) and value.ndim:
+            return value.astype(object) + sum(d * slope.astype(object) for d, slope in terms)
+        return mpf(float(value)) + sum((d * mpf(float(slope)) for d, slope in terms if slope), mpf(0))
+
+    return mapped(of, linear, *slopes)

@@ -14,7 +14,7 @@ from typing import NamedTuple
 from mpmath import mp, mpf
 
 from reference.events import simulate as simulate_machine
-from reference.machine import machine_of
+from reference.machine import machine_of, with_contacts
 
 REFERENCE = Path(__file__).parents[1] / "data" / "impacts.json"
 NAMES = ("mu_m", "mu_k", "zeta", "f2", "omega", "R", "b", "tau")
@@ -46,11 +46,13 @@ def linear_of(params):
     mu_m, mu_k, zeta, f2, omega, R, b, tau = (mpf(params[name]) for name in NAMES)
     none, K = [mpf(0)] * 2, [[mpf(1), mpf(-1)], [mpf(-1), 1 + mu_k]]
     sides = SIDES[params.get("stops", "both")]
-    return SimpleNamespace(
+    low, high = -b if -1 in sides else -math.inf, b if 1 in sides else math.inf
+    contact = SimpleNamespace(normal=[mpf(1), mpf(0)], low=low, high=high, R_low=R, R_high=R)
+    numbers = SimpleNamespace(
         M=[[mpf(1), mpf(0)], [mpf(0), mu_m]], K=K, C=[[2 * zeta * a for a in row] for row in K],
-        normal=[mpf(1), mpf(0)], sine=[1 - f2, f2], cosine=none, constant=none, omega=omega, tau=tau,
-        low=-b if -1 in sides else -math.inf, high=b if 1 in sides else math.inf, R_low=R, R_high=R,
+        sine=[1 - f2, f2], cosine=none, constant=none, omega=omega, tau=tau,
     )  # fmt: skip
+    return with_contacts(numbers, [contact])
 
 
 def simulate(params, state, periods=None, impacts=None, start_time=0, digits=40):

@@ -18,19 +18,19 @@ class AnyNaiveMap:
     """P = Phi_{T/2} o C2 o Phi_{T/2} o C1 of a `Linear` whose numbers may be those of mpmath; call it with a column."""
 
     def __init__(self, q, order, expand_at=None):
-        n = len(q.normal)
+        n = q.masses
         column = lambda values: mp.matrix([mpf(x) for x in values])  # noqa: E731
         square = lambda rows: mp.matrix([[mpf(x) for x in row] for row in rows])  # noqa: E731
         M, K, C = (square(matrix) for matrix in (q.M, q.K, q.C))
         self.omega, self.order, self.q = mpf(q.omega), order, q
         self.A = matrix_of(machine_of(q))[: 2 * n, : 2 * n]
-        push = mp.inverse(M) * column(q.normal)
-        push /= (column(q.normal).T * push)[0]
+        push = mp.inverse(M) * column(q.contact.normal)
+        push /= (column(q.contact.normal).T * push)[0]
         self.push, self.normal = mp.zeros(2 * n, 1), mp.zeros(1, 2 * n)
         for i in range(n):
-            self.push[2 * i + 1], self.normal[2 * i] = push[i], mpf(q.normal[i])
+            self.push[2 * i + 1], self.normal[2 * i] = push[i], mpf(q.contact.normal[i])
         x = mp.lu_solve(K - self.omega**2 * M + 1j * self.omega * C, column(q.cosine) - 1j * column(q.sine))
-        response = sum(mpf(a) * b for a, b in zip(q.normal, x, strict=True))
+        response = sum(mpf(a) * b for a, b in zip(q.contact.normal, x, strict=True))
         self.amplitudes = x * mp.expj(-mp.arg(response))
         self.graze = self.steady(0)
         if expand_at is not None:
@@ -46,7 +46,7 @@ class AnyNaiveMap:
 
     def strike(self, X):
         """(psi, speed squared at the right stop, acceleration); there is an impact where the square is positive."""
-        psi, a = (self.normal * X)[0] - mpf(self.q.high), -(self.omega**2) * (self.normal * self.graze)[0]
+        psi, a = (self.normal * X)[0] - mpf(self.q.contact.high), -(self.omega**2) * (self.normal * self.graze)[0]
         if self.order == 1:
             return psi, -2 * a * psi, a
         a += (self.normal * self.A * self.A * (X - self.graze))[0]
@@ -60,7 +60,7 @@ class AnyNaiveMap:
         w, impulse = mp.sqrt(square), self.push
         if self.order == 2:
             impulse = expm(-self.A * (w - (self.normal * self.A * X)[0]) / a) * impulse
-        return X - (1 + mpf(self.q.R_high)) * w * impulse
+        return X - (1 + mpf(self.q.contact.R_high)) * w * impulse
 
     def middle(self, X):
         """Half a period on, before the left stop, and mirrored: the left stop is the right one then."""
@@ -77,7 +77,7 @@ class NaiveMap(AnyNaiveMap):
     def __init__(self, params, order, shift=None):
         values = {name: mpf(params[name]) for name in naive.NAMES if name != "tau"}
         super().__init__(naive.linear_of({**values, "tau": 0}), order)
-        self.b = self.q.high = self.graze[0] - shift if shift is not None else values["b"]
+        self.b = self.q.contact.high = self.graze[0] - shift if shift is not None else values["b"]
         self.params = {**values, "b": self.b}
 
     def case(self, X):

@@ -51,11 +51,11 @@ class TestEveryModel:
         q, touch = one.linear, vs.grazing(one)
         with mp.workdps(40):
             X = response(q)
-            gap_response = sum(mpf(n) * x for n, x in zip(q.normal, X, strict=True))
+            gap_response = sum(mpf(n) * x for n, x in zip(q.contact.normal, X, strict=True))
             middle = mpf(0)
             if np.any(q.constant):
                 rest = mp.lu_solve(mp.matrix(q.K), mp.matrix(q.constant))
-                middle = sum(mpf(n) * x for n, x in zip(q.normal, rest, strict=True))
+                middle = sum(mpf(n) * x for n, x in zip(q.contact.normal, rest, strict=True))
             offset = mpf(getattr(one, "offset", 0.0))
             expected = abs(gap_response) + middle - offset, abs(gap_response) - middle + offset
         assert touch.b_right == pytest.approx(float(expected[0]), rel=1e-13)
@@ -63,8 +63,8 @@ class TestEveryModel:
         assert (touch.b == touch.b_right) if expected[0] == expected[1] else math.isnan(touch.b)
         assert abs(math.remainder(touch.tau + float(mp.arg(gap_response)), 2 * math.pi)) < 1e-13
         state = np.array(touch.state)
-        assert q.normal @ state[0::2] == pytest.approx(float(abs(gap_response) + middle), rel=1e-13)
-        assert abs(q.normal @ state[1::2]) < 1e-13 * np.abs(state).max()
+        assert q.contact.normal @ state[0::2] == pytest.approx(float(abs(gap_response) + middle), rel=1e-13)
+        assert abs(q.contact.normal @ state[1::2]) < 1e-13 * np.abs(state).max()
         assert one.phase == pytest.approx(touch.tau, abs=1e-14)
 
     def test_copies_are_equal(self, name):
@@ -75,7 +75,8 @@ class TestEveryModel:
             if isinstance(value, float):
                 changed = one.replace(**{key: 0.4 * value + 0.1})
                 assert changed.numbers[key] == 0.4 * value + 0.1 and one.numbers[key] == value
-                assert any(map(np.any, map(np.not_equal, changed.linear, one.linear))), key  # each number matters
+                both = map(numbers_of, (changed.linear, one.linear))
+                assert any(map(np.any, map(np.not_equal, *both))), key  # each number matters
 
     def test_derivatives_by_every_number(self, name):
         """The complex step against differences of the matrices."""
@@ -87,8 +88,8 @@ class TestEveryModel:
             step = 1e-6 * max(1.0, abs(value))
             high, low = (family.replace(**{key: value + sign * step}).linear for sign in (1, -1))
             slope = family.derivative(key)
-            for field in slope._fields:
-                up, down, found = (np.asarray(getattr(each, field), float) for each in (high, low, slope))
+            for numbers in zip(*map(numbers_of, (high, low, slope)), strict=True):
+                up, down, found = (np.asarray(each, float) for each in numbers)
                 finite = np.isfinite(up)
                 difference = (up[finite] - down[finite]) / (2 * step)
                 np.testing.assert_allclose(found[finite], difference, atol=2e-9, rtol=1e-8)
@@ -105,6 +106,12 @@ class TestEveryModel:
         again = parsed(scene.to_yaml())
         assert again.system == one and list(again.sweep) == [first]
         assert scene.parameters()[first].tolist() == [value, 2 * value]
+
+
+def numbers_of(q):
+    """All numbers of a `vs.types.Linear` with one contact."""
+    *numbers, (contact,) = q
+    return [*numbers, *contact]
 
 
 def _yaml(one):
@@ -126,9 +133,9 @@ def test_the_paper_as_a_chain_and_by_its_matrices():
     plain = vs.Oscillator(
         paper.M, paper.K, rayleigh=[0, 0.1], force=[0.75, 0.25], contact_normal=[1, 0], omega=0.63, R=0.8, b=6.6
     ).linear
-    for field in paper._fields:
-        for other in (chain, plain):
-            np.testing.assert_allclose(getattr(other, field), getattr(paper, field), rtol=1e-14, atol=1e-15)
+    for other in (chain, plain):
+        for found, wanted in zip(*map(numbers_of, (other, paper)), strict=True):
+            np.testing.assert_allclose(found, wanted, rtol=1e-14, atol=1e-15)
 
 
 def test_damping_that_is_not_proportional():
@@ -155,10 +162,10 @@ def test_ratios_of_the_modes():
 def test_unequal_stops():
     system = vs.System(**PAPER, offset=0.5, R_left=0.6)
     q = system.linear
-    assert (q.low, q.high, q.R_low, q.R_high) == (0.5 - 6.6, 0.5 + 6.6, 0.6, 0.8)
+    assert (q.contact.low, q.contact.high, q.contact.R_low, q.contact.R_high) == (0.5 - 6.6, 0.5 + 6.6, 0.6, 0.8)
     alone = vs.System(**(PAPER | dict(b=-1.5)), stops="right").linear
-    assert (alone.low, alone.high) == (-math.inf, -1.5)
-    assert vs.System(**PAPER, stops="left", R_left=0.3).linear.R_low == 0.3
+    assert (alone.contact.low, alone.contact.high) == (-math.inf, -1.5)
+    assert vs.System(**PAPER, stops="left", R_left=0.3).linear.contact.R_low == 0.3
     touch = vs.grazing(system)
     middle = vs.grazing(vs.System(**PAPER)).b
     assert (touch.b_right, touch.b_left) == (middle - 0.5, middle + 0.5) and math.isnan(touch.b)
@@ -225,7 +232,9 @@ def test_a_motion_begins_at_rest(tmp_path, one, rest):
     """Zero between the stops; else the gap at the nearer stop, and no force but that of the stop: K x = f + n F."""
     q = one.linear
     if rest is None:
-        *rest, force = np.linalg.solve(np.block([[q.K, -q.normal[:, None]], [q.normal[None], 0]]), [*q.constant, q.low])
+        *rest, force = np.linalg.solve(
+            np.block([[q.K, -q.contact.normal[:, None]], [q.contact.normal[None], 0]]), [*q.constant, q.contact.low]
+        )
         assert force > 0  # the left stop pushes to the right
     scene = parsed(f"system: {_yaml(one)}\norbit: {{transient: 0, record: 1}}")
     vs.run(scene, tmp_path / "x.h5")

@@ -11,7 +11,7 @@ def test_the_left_stop_has_the_numbers_of_the_right_one():
     system = vs.System(**PAPER, b=5, k_stop=100, c_stop=1)
     assert system.linear.symmetric and system.parameters()["k_stop_left"] == 100
     mixed = system.replace(R_left=0.5)
-    assert (mixed.linear.k_low, mixed.linear.R_low, mixed.linear.k_high) == (0, 0.5, 100)
+    assert (mixed.linear.contact.k_low, mixed.linear.contact.R_low, mixed.linear.contact.k_high) == (0, 0.5, 100)
     assert "k_stop_left" not in mixed.parameters()
 
 

@@ -164,7 +164,7 @@ def off_the_sum_rule(oscillators, branch, period: int) -> list[str]:
     points, wrong = branch.points, []
     sides = points.impact_side.values[0] if "impact_side" in points else []
     for k, q in list(enumerate(oscillators))[NEXT_TO_END:-NEXT_TO_END]:
-        R = np.array([q.R_high if side > 0 else q.R_low for side in sides])
+        R = np.array([q.contact.R_high if side > 0 else q.contact.R_low for side in sides])
         lost = np.trace(np.linalg.solve(q.M, q.C)) * period * 2 * np.pi / q.omega
         own = np.log(np.hypot(points.multiplier_re[k], points.multiplier_im[k]).values).sum()
         if not abs(own - 2 * np.log(R).sum() + lost) < 1e-8:

@@ -152,7 +152,7 @@ def multipliers(q, state, period, small):
 
     small : so many digits the smallest multiplier lies below 1
     """
-    masses, digits, step = len(q.normal), DIGITS + 2 * small, mpf(10) ** (STEP - small)
+    masses, digits, step = q.masses, DIGITS + 2 * small, mpf(10) ** (STEP - small)
     with mp.workdps(digits + 20):
         machine = machine_of(q)
         first = simulate(machine, state, periods=period, digits=digits)

@@ -81,17 +81,17 @@ def summed(seed):
     """The sums on the plane of oscillator `seed`."""
     system, axes = drawn(seed)
     q = system.linear
-    rigid = math.isfinite(q.low) and not q.k_low > 0
+    rigid = math.isfinite(q.contact.low) and not q.contact.k_low > 0
     words = ["section", "lyapunov", "contacts", *(["impacts"] if rigid else [])]
     data = vs.sweep(system, axes, transient=60, record=RECORD, observe=words)
     touched = (data.contacts_right + data.contacts_left).values
     counted = np.isin(data.status.values, VALID) & (touched > 0) & np.isfinite(data.lyapunov.values).all(-1)
-    exact = -np.trace(np.linalg.solve(q.M, q.C)) - q.c_high / mass_of(q) * data.contact_time.values
+    exact = -np.trace(np.linalg.solve(q.M, q.C)) - q.contact.c_high / mass_of(q) * data.contact_time.values
     if rigid:
         rate = data.impacts_left.values * axes["omega"][:, None] / (2 * math.pi * RECORD)
-        exact = exact + 2 * rate * math.log(q.R_low)
+        exact = exact + 2 * rate * math.log(q.contact.R_low)
     alike = counted & (data.period.values == 0)  # else the exponents are those of one period
-    if q.by_force and q.c_high > 0:
+    if q.contact.by_force and q.contact.c_high > 0:
         alike[:] = False
     apart = np.abs(data.lyapunov.values.sum(-1) - exact) / np.maximum(1, np.abs(exact))
     return Summed(
@@ -102,7 +102,7 @@ def summed(seed):
 
 def mass_of(q):
     """m_e = 1/(n M^-1 n)."""
-    return 1 / (q.normal @ np.linalg.solve(q.M, q.normal))
+    return 1 / (q.contact.normal @ np.linalg.solve(q.M, q.contact.normal))
 
 
 def study(seed) -> Report:

@@ -1,5 +1,7 @@
 """Special points and changes of stability along a branch, by monodromy matrices that do not come from the engine."""
 
+from operator import attrgetter
+
 import numpy as np
 from reference.machine import machine_of
 from reference.saltation import expm, field, monodromy, normal_and_push
@@ -158,10 +160,10 @@ def distance(special) -> tuple[float, str]:
 
 def flown(found, q, t, sides, v, period, k, lengths):
     """(len(lengths), 2N + 3) states at these times after impact k."""
-    N = len(q.normal)
+    N = q.masses
     if len(t):
         _, push = normal_and_push(machine_of(q))
-        one_plus_R = 1 + (q.R_high if sides[k] > 0 else q.R_low)
+        one_plus_R = 1 + (q.contact.R_high if sides[k] > 0 else q.contact.R_low)
         x, at = found.states[0, k].copy(), t[k]
         x[N:] -= one_plus_R * v[k] * push
     else:
@@ -173,13 +175,13 @@ def flown(found, q, t, sides, v, period, k, lengths):
 
 def _nearest(found, q, t, sides, v, period) -> float:
     """The least distance of the gap's turning points from a stop."""
-    N, best = len(q.normal), np.inf
+    N, best = q.masses, np.inf
     # of the free motion a little more than a period: with the phase `grazing` a turning point lies at its ends
     ends = np.append(t, t[0] + period) if len(t) else np.array([0.0, 1.01 * period])
     for k in range(len(ends) - 1):
         s = np.linspace(0, ends[k + 1] - ends[k], 400)
         z = flown(found, q, t, sides, v, period, k, s)
-        rate = z[:, N : 2 * N] @ q.normal
+        rate = z[:, N : 2 * N] @ q.contact.normal
         turns = np.flatnonzero(rate[:-1] * rate[1:] <= 0)
         for i in turns.tolist():
             low, high = s[i], s[i + 1]
@@ -188,21 +190,22 @@ def _nearest(found, q, t, sides, v, period) -> float:
             for _ in range(60):  # by halves
                 middle = (low + high) / 2
                 there = flown(found, q, t, sides, v, period, k, [middle])[0]
-                low, high = (middle, high) if (there[N : 2 * N] @ q.normal) * rate[i] > 0 else (low, middle)
-            g = there[:N] @ q.normal
-            best = min(best, abs(q.high - g), abs(g - q.low), key=abs)
+                low, high = (middle, high) if (there[N : 2 * N] @ q.contact.normal) * rate[i] > 0 else (low, middle)
+            g = there[:N] @ q.contact.normal
+            best = min(best, abs(q.contact.high - g), abs(g - q.contact.low), key=abs)
     return best
 
 
 def passing(pieces: Pieces) -> list[tuple[str, str]]:
     """Points of a branch at which a flight is beyond a stop."""
     q0, K = pieces.oscillators[0], len(pieces.sides)
-    N, m = len(q0.normal), len(pieces.values)
+    N, m = q0.masses, len(pieces.values)
     machines = [machine_of(q) for q in pieces.oscillators]
     A = np.array([field(machine) for machine in machines])
     along, push = np.swapaxes([normal_and_push(machine) for machine in machines], 0, 1)
     omega, tau, low, high = (
-        np.array([getattr(q, name) for q in pieces.oscillators], float) for name in ("omega", "tau", "low", "high")
+        np.array([attrgetter(name)(q) for q in pieces.oscillators], float)
+        for name in ("omega", "tau", "contact.low", "contact.high")
     )
     t = pieces.t if K else np.zeros((m, 1))
     ends = np.concatenate([t[:, 1:], (t[:, 0] + pieces.periods)[:, None]], axis=1)
@@ -210,7 +213,9 @@ def passing(pieces: Pieces) -> list[tuple[str, str]]:
     for k in range(max(K, 1)):
         x = pieces.states[:, k].copy()
         if K:
-            one_plus_R = np.array([1 + (q.R_high if pieces.sides[k] > 0 else q.R_low) for q in pieces.oscillators])
+            one_plus_R = np.array(
+                [1 + (q.contact.R_high if pieces.sides[k] > 0 else q.contact.R_low) for q in pieces.oscillators]
+            )
             x[:, N:] -= (one_plus_R * pieces.v[:, k])[:, None] * push
         phase = omega * t[:, k] + tau
         z = np.concatenate([x, np.stack([np.sin(phase), np.cos(phase), np.ones(m)], axis=1)], axis=1)
@@ -233,9 +238,9 @@ def free_passes(branch, case) -> list[tuple[str, str]]:
     for value in np.linspace(values[0], values[-1], 2001)[1:-1].tolist():
         q = system.replace(**{case.name: value}).linear
         Z = q.K - q.omega**2 * q.M + 1j * q.omega * q.C
-        size = abs(q.normal @ np.linalg.solve(Z, q.cosine - 1j * q.sine))
-        middle = q.normal @ np.linalg.lstsq(q.K, q.constant)[0]
-        over = max(middle + size - q.high, q.low - middle + size)
+        size = abs(q.contact.normal @ np.linalg.solve(Z, q.cosine - 1j * q.sine))
+        middle = q.contact.normal @ np.linalg.lstsq(q.K, q.constant)[0]
+        over = max(middle + size - q.contact.high, q.contact.low - middle + size)
         if over > 1e-9 * size:
             return [
                 ("free motion beyond a stop", f"at {value!r} by {over:.1e}, between {values[0]!r} and {values[-1]!r}")

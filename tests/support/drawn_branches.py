@@ -64,7 +64,7 @@ def drawn_oscillator(model: str, rng):
         numbers |= {"contact_normal": rng.normal(size=n), "force": force[:n], "force_cos": rng.normal(size=n)}
         numbers["constant"] = constant[:n]
     q = vs.Oscillator.named(model, **numbers).linear
-    size, middle = abs(q.normal @ amplitudes(q)), q.normal @ static_state(q)
+    size, middle = abs(q.contact.normal @ amplitudes(q)), q.contact.normal @ static_state(q)
     numbers["b"] = size * rng.uniform(0.1, 1.05)
     if not symmetric and model != "ball_in_cavity":
         numbers["offset"] = middle + (0.0 if stops != "both" else 0.1) * size * rng.normal()
@@ -76,11 +76,15 @@ def recorded(system, rng):
     q = system.linear
     low, high = (
         edge if np.isfinite(edge) else other + sign * 2 * system.b
-        for edge, other, sign in ((q.low, q.high, -1), (q.high, q.low, 1))
+        for edge, other, sign in ((q.contact.low, q.contact.high, -1), (q.contact.high, q.contact.low, 1))
     )
-    state = rng.normal(size=2 * len(q.normal)) * system.b * np.tile([1.0, q.omega], len(q.normal))
-    state[::2] += q.normal * (rng.uniform(low, high) - q.normal @ state[::2]) / (q.normal @ q.normal)
-    if not q.low < q.normal @ state[::2] < q.high:
+    state = rng.normal(size=2 * q.masses) * system.b * np.tile([1.0, q.omega], q.masses)
+    state[::2] += (
+        q.contact.normal
+        * (rng.uniform(low, high) - q.contact.normal @ state[::2])
+        / (q.contact.normal @ q.contact.normal)
+    )
+    if not q.contact.low < q.contact.normal @ state[::2] < q.contact.high:
         return None
     section = vs.simulate(system, state, 1500).section
     for n in range(1, 25):
@@ -113,7 +117,7 @@ def drawn_number(system, rng) -> tuple[str, tuple[float, float]]:
     name = str(rng.choice(often if rng.random() < 0.6 else names))
     value, q = float(numbers[name]), system.linear
     if name == "b":
-        graze = abs(q.normal @ amplitudes(q))
+        graze = abs(q.contact.normal @ amplitudes(q))
         return name, (min(0.1 * graze, 0.9 * value), max(1.1 * graze, 1.1 * value))
     reach = {"offset": 0.3 * system.b, "tau": 1.0}.get(name, 0.3 * abs(value) or 0.2)
     lo, hi = value - reach, value + reach

@@ -22,7 +22,7 @@ PAPER_KINDS = (*ROUND, *ROUND, "narrow", "stiff", "any")
 
 def swing(q) -> float:
     """Of the gap of a `vs.types.Linear` in the steady motion without stops."""
-    return float(abs(q.normal @ steady(q)))
+    return float(abs(q.contact.normal @ steady(q)))
 
 
 def steady(q) -> np.ndarray:
@@ -47,11 +47,11 @@ def drawn(seed, n, constant=True, contact_normal=None, **changes):
     if contact_normal is not None:
         numbers["contact_normal"] = np.array(contact_normal, float)
     free = vs.Oscillator(**numbers).linear
-    size, middle = swing(free), free.normal @ np.linalg.solve(free.K, free.constant)
+    size, middle = swing(free), free.contact.normal @ np.linalg.solve(free.K, free.constant)
     numbers |= {"b": 0.45 * size, "offset": middle - 0.05 * size} | changes
     system = vs.Oscillator(**numbers)
     state = np.zeros(2 * n)
-    state[0::2] = np.linalg.lstsq(free.normal[None], [system.offset], rcond=None)[0]
+    state[0::2] = np.linalg.lstsq(free.contact.normal[None], [system.offset], rcond=None)[0]
     return system, state
 
 

@@ -53,10 +53,10 @@ def floats(row):
 
 
 def machine_of_system(system):
-    """The machine of an oscillator of the package."""
-    q = system.linear
-    stops = stops_of(system.contacts)
-    return machine_of(q.M, q.K, q.C, q.constant, [(1, q.sine, q.cosine)], q.omega, q.tau, stops), stops
+    """The machine of an oscillator of the package, with any number of contacts."""
+    q = system._family.built
+    tau, stops = system.phase if q.tau is None else q.tau, stops_of(q.contacts)
+    return machine_of(q.M, q.K, q.C, q.constant, [(1, q.sine, q.cosine)], q.omega, tau, stops), stops
 
 
 def orbit_of(made, state, until, *, start=0.0, events=1000, vectors=None, periods=0) -> Orbit:

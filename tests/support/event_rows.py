@@ -25,7 +25,7 @@ def recorded(orbit, end=None) -> Recorded:
         x, xdot = hits["x"], hits["xdot"]
     else:  # of the paper's oscillator: x1 is at its stop
         q = orbit.system.linear
-        x = np.stack([np.where(hits["side"] > 0, q.high, q.low), hits["x2"]], -1)
+        x = np.stack([np.where(hits["side"] > 0, q.contact.high, q.contact.low), hits["x2"]], -1)
         xdot = np.stack([hits["v1"], hits["v2"]], -1)
     contacts = orbit.contacts[~np.isnan(orbit.contacts["t_release"])]
     rests = orbit.sticking

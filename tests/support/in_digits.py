@@ -4,14 +4,13 @@ A motion is that of an orbit, or, at a point of a curve, that of a simulation fr
 """
 
 from collections.abc import Callable
-from types import SimpleNamespace
 from typing import NamedTuple
 
 import numpy as np
 from mpmath import mp
 from reference.closed_orbit import ClosedOrbit, contacts_of, element_of
 from reference.conditions import Condition
-from reference.machine import machine_of, moved
+from reference.machine import machine_of, mapped, moved
 
 import vibro_sweep as vs
 from support.events import Event, events_of
@@ -64,7 +63,7 @@ class Motion(NamedTuple):
         return self.periods * 2 * np.pi / self.system.linear.omega
 
     def gap(self, times) -> np.ndarray:
-        return self.sample(times)[:, ::2] @ self.system.linear.normal
+        return self.sample(times)[:, ::2] @ self.system.linear.contact.normal
 
     def grid(self) -> np.ndarray:
         """Times of a period, from the first event on."""
@@ -81,7 +80,7 @@ def of_point(curve, k: int, orbit) -> Motion:
     """At a point of a curve; orbit: that of the special point at which the curve was begun."""
     point = curve.points.isel(point=k)
     system = orbit.system.replace(**{name: float(point[name]) for name in curve.parameters})
-    names = [f"{letter}{i + 1}" for i in range(len(system.linear.normal)) for letter in "xv"]
+    names = [f"{letter}{i + 1}" for i in range(system.linear.masses) for letter in "xv"]
     symmetric = orbit.symmetric and system.linear.symmetric
     run = vs.simulate(system, np.array([float(point[name]) for name in names]), 2 * orbit.period)
     motion = Motion(system, orbit.period / (1 + symmetric), -1 if symmetric else 1, [], run.sample)
@@ -107,7 +106,7 @@ def turning_points(motion: Motion) -> list[tuple[float, int]]:
     times, q = motion.grid(), motion.system.linear
     times = np.append(times, times[-1] + (times[1] - times[0]) * np.arange(1, 3))
     gap, near, found = motion.gap(times), 2 * (times[1] - times[0]), []
-    for side, place in ((1, q.high), (-1, q.low)):
+    for side, place in ((1, q.contact.high), (-1, q.contact.low)):
         height = side * gap
         (tops,) = np.nonzero((height[1:-1] > height[:-2]) & (height[1:-1] >= height[2:]))
         for k in tops + 1:
@@ -192,10 +191,9 @@ def slope_of(system, name: str, value: float):
             ends.append((value, system.replace(**{name: value}).linear))
     (above, q), (below, p) = ends
     with np.errstate(invalid="ignore"):
-        slopes = {field: (np.subtract(getattr(q, field), getattr(p, field), dtype=float)) / (above - below)
-                  for field in q._fields}  # fmt: skip
-    slopes = {field: np.nan_to_num(slope) for field, slope in slopes.items()}  # inf: no stop
-    return SimpleNamespace(**slopes | {"tau": 0.0})
+        slope = mapped(lambda name, x, y: np.nan_to_num(np.subtract(x, y, dtype=float) / (above - below)), q, p)
+    slope.tau = 0.0  # of no stop, inf - inf is 0
+    return slope
 
 
 def moved_by(motion: Motion, values: dict, conditions=(), touches=(), theta=None, angle=None, pulled=False):

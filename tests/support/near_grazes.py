@@ -36,8 +36,8 @@ def study(seed) -> Report:
 
 def flights(reference, system, count, rng):
     """States (n, 2 N) of the masses at the section, decades (n,), whether the extremum lies before the stop (n,)."""
-    n, states, push = system.masses, reference.states, np.linalg.solve(system.linear.M, system.linear.normal)
-    along, push = system.linear.normal, push / (system.linear.normal @ push)
+    n, states, push = system.masses, reference.states, np.linalg.solve(system.linear.M, system.linear.contact.normal)
+    along, push = system.linear.contact.normal, push / (system.linear.contact.normal @ push)
     u = float(reference.period) * rng.uniform(0.02, 0.98)
     decade, missing, side = rng.choice(DECADES, count), rng.random(count) < 0.5, rng.choice([-1, 1], count)
     z = np.zeros((count, reference.A.rows), REAL)

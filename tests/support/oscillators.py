@@ -3,7 +3,7 @@
 import numpy as np
 
 import vibro_sweep as vs
-from vibro_sweep.types import Family, Linear
+from vibro_sweep.types import Family, Linear, LinearContact
 
 PAPER_NUMBERS = "mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8"  # as scenes write them; b is left out
 PAPER = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=2.0)
@@ -13,16 +13,16 @@ def bouncing_ball(*, A, omega, G, R) -> Linear:
     """Height above a table that moves as A sin(omega t) downwards: x'' = -G + A omega^2 sin(omega t), x >= 0."""
     zero = np.zeros((1, 1))
     return Linear(
-        M=np.eye(1), K=zero, C=zero, normal=np.ones(1), constant=np.array([-G]), sine=np.array([A * omega**2]),
-        cosine=np.zeros(1), omega=omega, tau=0.0, low=0.0, high=np.inf, R_low=R, R_high=R,
+        M=np.eye(1), K=zero, C=zero, constant=np.array([-G]), sine=np.array([A * omega**2]),
+        cosine=np.zeros(1), omega=omega, tau=0.0, contacts=[LinearContact(np.ones(1), 0.0, np.inf, R, R)],
     )  # fmt: skip
 
 
 def one_mass(*, damping, F, omega, R, b) -> Linear:
     """x'' + damping x' + x = F cos(omega t), x <= b (arXiv 2510.16218)."""
     return Linear(
-        M=np.eye(1), K=np.eye(1), C=damping * np.eye(1), normal=np.ones(1), constant=np.zeros(1), sine=np.zeros(1),
-        cosine=F * np.ones(1), omega=omega, tau=0.0, low=-np.inf, high=b, R_low=R, R_high=R,
+        M=np.eye(1), K=np.eye(1), C=damping * np.eye(1), constant=np.zeros(1), sine=np.zeros(1),
+        cosine=F * np.ones(1), omega=omega, tau=0.0, contacts=[LinearContact(np.ones(1), -np.inf, b, R, R)],
     )  # fmt: skip
 
 
@@ -32,8 +32,8 @@ def chain(*, c, k, F, omega, R, R_left, b, offset, tau=None) -> Linear:
     C = c * np.array([[3, -1, 0], [-1, 1, 0], [0, 0, 0.5]])
     M = np.array([[1, 0.1, 0], [0.1, 2, 0], [0, 0, 1.5]])
     return Linear(
-        M=M, K=K, C=C, normal=np.array([1.0, -1, 0]), constant=np.array([0.1, 0, 0]), sine=np.array([0, 0, 1.0]) * F,
-        cosine=np.zeros(3), omega=omega, tau=tau, low=offset - b, high=offset + b, R_low=R_left, R_high=R,
+        M=M, K=K, C=C, constant=np.array([0.1, 0, 0]), sine=np.array([0, 0, 1.0]) * F, cosine=np.zeros(3), omega=omega,
+        tau=tau, contacts=[LinearContact(np.array([1.0, -1, 0]), offset - b, offset + b, R_left, R)],
     )  # fmt: skip
 
 
@@ -41,8 +41,8 @@ def ball_in_cavity(*, ratio, zeta, F, omega, R, b) -> Linear:
     """A sprung host x1 of mass 1 and a free ball x2 in it, |x2 - x1| < b."""
     return Linear(
         M=np.array([[1, 0], [0, ratio]]), K=np.array([[1.0, 0], [0, 0]]), C=2 * zeta * np.array([[1.0, 0], [0, 0]]),
-        normal=np.array([-1.0, 1]), constant=np.zeros(2), sine=np.array([1.0, 0]) * F, cosine=np.zeros(2), omega=omega,
-        tau=0.0, low=-b, high=b, R_low=R, R_high=R,
+        constant=np.zeros(2), sine=np.array([1.0, 0]) * F, cosine=np.zeros(2), omega=omega,
+        tau=0.0, contacts=[LinearContact(np.array([-1.0, 1]), -b, b, R, R)],
     )  # fmt: skip
 
 
@@ -53,8 +53,8 @@ def long_chain(*, k, c, F, omega, R, b) -> Linear:
     force, along = np.zeros(N), np.zeros(N)
     force[0], along[3] = F, 1
     return Linear(
-        M=np.diag(1 + 0.1 * np.arange(N)), K=K, C=c * K, normal=along, constant=np.zeros(N), sine=force,
-        cosine=np.zeros(N), omega=omega, tau=None, low=-b, high=b, R_low=R, R_high=R,
+        M=np.diag(1 + 0.1 * np.arange(N)), K=K, C=c * K, constant=np.zeros(N), sine=force,
+        cosine=np.zeros(N), omega=omega, tau=None, contacts=[LinearContact(along, -b, b, R, R)],
     )  # fmt: skip
 
 

@@ -38,7 +38,7 @@ def random_oscillator(rng, masses=None) -> vs.Oscillator:
         "stops": str(rng.choice(["both", "right", "left"])),
     }  # fmt: skip
     q = vs.Oscillator(**numbers, b=1.0).linear
-    size, middle = abs(q.normal @ amplitudes(q)), q.normal @ static_state(q)
+    size, middle = abs(q.contact.normal @ amplitudes(q)), q.contact.normal @ static_state(q)
     return vs.Oscillator(**numbers, b=size * rng.uniform(0.1, 1.05), offset=middle + 0.1 * size * rng.normal())
 
 
@@ -49,8 +49,8 @@ def attractors(system, rng, most=3, tries=12):
     high = system.offset + (1 if system.stops != "left" else 2) * system.b
     for _ in range(tries):
         gap = rng.uniform(low, high)
-        state = rng.normal(size=2 * len(q.normal)) * system.b * np.tile([1.0, system.omega], len(q.normal))
-        state[::2] += q.normal * (gap - q.normal @ state[::2]) / (q.normal @ q.normal)
+        state = rng.normal(size=2 * q.masses) * system.b * np.tile([1.0, system.omega], q.masses)
+        state[::2] += q.contact.normal * (gap - q.contact.normal @ state[::2]) / (q.contact.normal @ q.contact.normal)
         section = vs.simulate(system, state, 2000).section
         periods = [n for n in range(1, 25) if np.abs(section[-1] - section[-1 - n]).max() < 1e-10 * system.b]
         if not periods:
@@ -66,10 +66,14 @@ def attractors(system, rng, most=3, tries=12):
 def within(system, state):
     """A state with the gap between the stops: moved along the gap if need be."""
     q, state = system.linear, np.array(state, float)
-    gap = q.normal @ state[::2]
-    state[::2] += q.normal * (np.clip(gap, q.low, q.high) - gap) / (q.normal @ q.normal)
-    if len(q.normal) == 1:  # to the last digit
-        state[0] = np.clip(state[0], *sorted((q.low / q.normal[0], q.high / q.normal[0])))
+    gap = q.contact.normal @ state[::2]
+    state[::2] += (
+        q.contact.normal * (np.clip(gap, q.contact.low, q.contact.high) - gap) / (q.contact.normal @ q.contact.normal)
+    )
+    if q.masses == 1:  # to the last digit
+        state[0] = np.clip(
+            state[0], *sorted((q.contact.low / q.contact.normal[0], q.contact.high / q.contact.normal[0]))
+        )
     return state
 
 

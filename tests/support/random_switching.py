@@ -99,11 +99,11 @@ def study(seed: int) -> Report:
 def attractor(system, rng, tries=4):
     """(state, period) of a periodic attractor, or None."""
     q = system.linear
-    low = q.low if np.isfinite(q.low) else q.high - 2
-    high = q.high if np.isfinite(q.high) else q.low + 2
+    low = q.contact.low if np.isfinite(q.contact.low) else q.contact.high - 2
+    high = q.contact.high if np.isfinite(q.contact.high) else q.contact.low + 2
     for _ in range(tries):
-        gap, state = rng.uniform(low, high), 0.5 * (high - low) * rng.normal(size=2 * len(q.normal))
-        state[::2] += q.normal * (gap - q.normal @ state[::2]) / (q.normal @ q.normal)
+        gap, state = rng.uniform(low, high), 0.5 * (high - low) * rng.normal(size=2 * q.masses)
+        state[::2] += q.contact.normal * (gap - q.contact.normal @ state[::2]) / (q.contact.normal @ q.contact.normal)
         section = vs.simulate(system, within(system, state), 2000).section
         size = np.abs(section[-1]).max()
         periods = [n for n in range(1, 25) if np.abs(section[-1] - section[-1 - n]).max() < 1e-10 * size]
@@ -168,7 +168,11 @@ def _simulated(report: Report, where: str, orbit) -> None:
     run = vs.simulate(system, orbit.state, n)
     states, q = run.section, system.linear
     size = max(np.abs(states).max(), 1e-300)
-    gap = max(np.abs(states[:, ::2] @ q.normal).max(), *(abs(x) for x in (q.low, q.high) if np.isfinite(x)), 1e-300)
+    gap = max(
+        np.abs(states[:, ::2] @ q.contact.normal).max(),
+        *(abs(x) for x in (q.contact.low, q.contact.high) if np.isfinite(x)),
+        1e-300,
+    )
     report.counted["simulated"] += 1
     error = np.abs(states[-1] - orbit.state).max() / size
     if not error < CLOSE * largest:

@@ -6,10 +6,10 @@ the stop that is hit (as a gap of the size of b cannot be known better), it says
 """
 
 import math
-from types import SimpleNamespace
 
 import numpy as np
 from mpmath import mp, mpf
+from reference.machine import mapped
 
 import vibro_sweep as vs
 from support.drawn_oscillators import drawn_stiff
@@ -30,8 +30,8 @@ class Flight:
     """All flights of one oscillator, of mpf: sums of exponentials. held: while a stop holds the gap."""
 
     def __init__(self, q, constrained=False):
-        n = len(q.normal)
-        self.n, self.normal = n, [mpf(a) for a in q.normal]
+        n = q.masses
+        self.n, self.normal = n, [mpf(a) for a in q.contact.normal]
         M, rows = mp.matrix(q.M.tolist()), np.hstack([-q.K, -q.C, np.stack([q.sine, q.cosine, q.constant], -1)])
         push = mp.lu_solve(M, mp.matrix(self.normal))
         self.push = push / mp.fdot(self.normal, push)
@@ -105,7 +105,7 @@ def impacts_of(q, state, guesses, sides, walls=None, look=False):
     flight, found = Flight(q), []
     t, z = mpf(0), [mpf(x) for x in [*state[0::2], *state[1::2]]]
     for i, (guess, side) in enumerate(zip(guesses, sides, strict=True)):
-        wall, R = (q.high, q.R_high) if side > 0 else (q.low, q.R_low)
+        wall, R = (q.contact.high, q.contact.R_high) if side > 0 else (q.contact.low, q.contact.R_low)
         wall += walls[i] if walls is not None else 0
         parts, s = flight.parts(z, t), mpf(float(guess)) - t
         if look and leaves_stops(q, flight, parts, s):
@@ -134,7 +134,7 @@ def leaves_stops(q, flight, parts, s):
     """Whether a flight passes a stop before the time s."""
     gaps = flight.gaps(parts, np.linspace(0, float(s), SAMPLES)[1:-1])
     stop_distance = BETWEEN * np.abs(gaps).max()
-    return gaps.max() > float(q.high) + stop_distance or gaps.min() < float(q.low) - stop_distance
+    return gaps.max() > float(q.contact.high) + stop_distance or gaps.min() < float(q.contact.low) - stop_distance
 
 
 def strikes_until(q, state, hits, true, end):
@@ -149,7 +149,7 @@ def after_impacts(flight, q, state, hits, found):
     if not found:
         return mpf(0), [*state[0::2], *state[1::2]]
     t, v, z = found[-1]
-    return t, flight.after(z, v, q.R_high if hits["side"][len(found) - 1] > 0 else q.R_low)
+    return t, flight.after(z, v, q.contact.R_high if hits["side"][len(found) - 1] > 0 else q.contact.R_low)
 
 
 def moved(q, state, rng):
@@ -163,8 +163,8 @@ def moved(q, state, rng):
             signs = np.triu(signs) + np.triu(signs, 1).T
         return np.vectorize(lambda x, sign: mpf(float(x)) * (1 + int(sign) * part), otypes=[object])(value, signs)
 
-    numbers = {name: one(value) if np.ndim(value) else one(value)[0] for name, value in q._asdict().items()}
-    return SimpleNamespace(**numbers), list(one(state))
+    numbers = mapped(lambda name, value: one(value) if np.ndim(value) else one(value)[0], q)
+    return numbers, list(one(state))
 
 
 def study(seed) -> Report:
@@ -246,11 +246,11 @@ def is_decided(system, state, hits, true, seed, end=None):
         flight = Flight(numbers)
         t, z = after_impacts(flight, numbers, x, hits, before)
         gaps.append(flight.gaps(flight.parts(z, t), times - float(t)))
-    past = np.maximum(gaps[0] - float(q.high), float(q.low) - gaps[0])
+    past = np.maximum(gaps[0] - float(q.contact.high), float(q.contact.low) - gaps[0])
     at = int(past[:-1].argmax())
     missing = past[at]
     if missing <= BETWEEN * np.abs(gaps[0]).max():  # it is between the stops until then
-        at, missing = -1, abs(gaps[0][-1] - float(q.high if hits["side"][m] > 0 else q.low))
+        at, missing = -1, abs(gaps[0][-1] - float(q.contact.high if hits["side"][m] > 0 else q.contact.low))
     return missing > 10 * max(abs(gap[at] - gaps[0][at]) for gap in gaps[1:])
 
 
@@ -260,7 +260,7 @@ def errors_of(system, state, hits, true, seed, moves):
     for _ in range(moves):
         walls = [int(sign) * step for sign in rng.choice([-1, 1], len(hits))]
         others.append(impacts_of(*moved(system.linear, state, rng), hits["t"], hits["side"], walls))
-    errors, n = {"t": 0.0, "v": 0.0, "x": 0.0, "xdot": 0.0}, len(system.linear.normal)
+    errors, n = {"t": 0.0, "v": 0.0, "x": 0.0, "xdot": 0.0}, system.linear.masses
     hits = hits[: min(map(len, [true, *others]))]  # up to a graze that rounding takes away
     for i, (hit, (t, v, z)) in enumerate(zip(hits, true[: len(hits)], strict=True)):
         effects = {"t": _largest([other[i][0] - t for other in others])}

@@ -202,9 +202,7 @@ def covered(report, wrong, data, windows, name) -> None:
     last = [
         data[key].isel({d: -1 for d in data[key].dims if d not in (name, "start")}).transpose(name, ...).values
         for key in [
-            f"{kind}{i + 1}"
-            for i in range(len(windows[0]._system.linear.normal) if len(windows) else 0)
-            for kind in "xv"
+            f"{kind}{i + 1}" for i in range(windows[0]._system.linear.masses if len(windows) else 0) for kind in "xv"
         ]
     ]
     values = data[name].values

@@ -31,8 +31,10 @@ def test_they_are_between_the_stops(stops):
         scene = scene_from(changed({}, {"system": system, **given}), "sweep")
         (block,) = blocks.blocks(scene, lambda: 1)
         states, q = starts_of(block)[0], system.linear
-        gaps = states[:, 0::2] @ q.normal
+        gaps = states[:, 0::2] @ q.contact.normal
         slack = 1e-12 * np.abs(states).max()
-        assert np.all(np.isfinite(states)) and np.all((q.low - slack < gaps) & (gaps < q.high + slack)), seed
+        assert np.all(np.isfinite(states)) and np.all(
+            (q.contact.low - slack < gaps) & (gaps < q.contact.high + slack)
+        ), seed
         moved += np.abs(states[:, 0::2] - system.offset).max() > system.b
     assert moved > 10

@@ -77,9 +77,9 @@ def _phase(system: dict) -> str:
 def _rates_apart(system: dict) -> str:
     """The ratio of the fastest rate between the stops, or in a compliant one, to the slowest, in powers of ten."""
     q = system_of(system).linear
-    n, rates = len(q.normal), []
-    for k, c in ((0.0, 0.0), (q.k_low, q.c_low), (q.k_high, q.c_high)):
-        held, damped = (np.nan_to_num(one) * np.outer(q.normal, q.normal) for one in (k, c))
+    n, rates = q.masses, []
+    for k, c in ((0.0, 0.0), (q.contact.k_low, q.contact.c_low), (q.contact.k_high, q.contact.c_high)):
+        held, damped = (np.nan_to_num(one) * np.outer(q.contact.normal, q.contact.normal) for one in (k, c))
         inverse = np.linalg.inv(q.M)
         A = np.block([[np.zeros((n, n)), np.eye(n)], [-inverse @ (q.K + held), -inverse @ (q.C + damped)]])
         rates += [rate for rate in np.abs(np.linalg.eigvals(A)) if rate > 0]

@@ -7,7 +7,7 @@ import numpy as np
 
 from vibro_sweep.oscillator.function_model import BUILD, FunctionModel
 from vibro_sweep.oscillator.grid import linears
-from vibro_sweep.oscillator.linear import Linear, roots
+from vibro_sweep.oscillator.linear import Linear, mapped, roots, selected
 from vibro_sweep.oscillator.oscillator import Oscillator
 from vibro_sweep.oscillator.quiet import Quiet, free_motion, quiet
 from vibro_sweep.results.sweep_dataset import Sweep
@@ -124,7 +124,7 @@ def _motion(system: Oscillator, q: Linear, display: Display) -> str:
     def text(values: np.ndarray) -> str:
         return range_text(float(values[known].min()), float(values[known].max()), unit, display)
 
-    gap = np.minimum(np.ravel(q.high) - middle, middle - np.ravel(q.low))
+    gap = np.minimum(np.ravel(q.contact.high) - middle, middle - np.ravel(q.contact.low))
     about = f" about {text(middle)}" if np.any(middle[known]) else ""
     touched = room[known] < 0
     some = "touched at some of these values"
@@ -179,7 +179,7 @@ def quiet_line(sweep: Sweep) -> list[str]:
 
 def _settling(q: Linear, transient: int) -> str:
     """How many forcing periods the slowest mode needs, and how many there are."""
-    flat = [Linear(*fields) for fields in _each(q)]
+    flat = _each(q)
     rates = [roots(one) for one in flat]
     slowest = min(float(-rate.real.max() * 2 * math.pi / one.omega) for rate, one in zip(rates, flat, strict=True))
     if np.isnan(rates).any():
@@ -190,11 +190,9 @@ def _settling(q: Linear, transient: int) -> str:
     return f"the slowest mode settles in {float(f'{needed:.2g}'):,.0f} forcing periods; transient {transient:,}"
 
 
-def _each(q: Linear) -> list[tuple]:
+def _each(q: Linear) -> list[Linear]:
     """The first and the last oscillator of a stack, and that in the middle."""
     shape = np.shape(q.omega)
     count = math.prod(shape)
-    places = sorted({0, count // 2, count - 1})
-    return [
-        tuple(None if x is None else np.reshape(x, (count, *np.shape(x)[len(shape) :]))[i] for x in q) for i in places
-    ]
+    flat = mapped(lambda name, x: None if x is None else np.reshape(x, (count, *np.shape(x)[len(shape) :])), q)
+    return [selected(flat, i) for i in sorted({0, count // 2, count - 1})]

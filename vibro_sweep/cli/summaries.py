@@ -168,7 +168,7 @@ def _default(declared: Parameter | Option) -> str:
 def advice_on(scene: "Scene") -> str:
     """What a scene asks for in vain, and what it may mean; "" where there is no such thing."""
     sides = {"right": [1], "left": [-1]}.get(scene.system.options.get("stops", "both"), [1, -1])
-    soft = scene.system.linear.is_compliant(sides).all() and "contacts" not in scene.observe
+    soft = scene.system.linear.contact.is_compliant(sides).all() and "contacts" not in scene.observe
     return (
         "impacts are those on rigid stops: observe contacts with these" if soft and "impacts" in scene.observe else ""
     )

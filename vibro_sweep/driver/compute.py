@@ -180,7 +180,7 @@ def _by_name(block: Block, arrays: dict[str, np.ndarray], lead: tuple[int, ...])
             for i, name in enumerate(state(block.system.masses))
         }
     if GAP in block.wanted:
-        gap = sections[..., 0::2] @ block.system.linear.normal
+        gap = sections[..., 0::2] @ block.system.linear.contact.normal
         named[GAP] = gap.reshape(lead + gap.shape[2:])
     if block.plan.section_side:
         named["phase"] = arrays["phases"].reshape(lead + arrays["phases"].shape[2:])

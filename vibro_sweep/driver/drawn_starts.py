@@ -34,7 +34,7 @@ def _random(block: Block, count: int, masses: int) -> np.ndarray:
     """
     each, seed, box = block.starts
     ranges = [(state(masses).index(name), low, high) for name, low, high in box]
-    along, stops = block.system.linear.normal, block.system.options.get("stops", "both")
+    along, stops = block.system.linear.contact.normal, block.system.options.get("stops", "both")
     numbers = {"offset": np.zeros(block.indices.shape)} | block.parameters
     result = np.empty((count, block.part.stop - block.part.start, 2 * masses))
     for n, place in enumerate(np.ndindex(block.indices.shape)):

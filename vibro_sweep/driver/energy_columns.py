@@ -50,7 +50,7 @@ def energies_of(block: Block, steps: np.ndarray, kind: Kind, results: np.ndarray
 def _contact_masses(block: Block, shape: tuple[int, int]) -> np.ndarray:
     """1/(n^T M^-1 n) of each point, of the shape of the steps."""
     q = linears(block.system, block.axes)
-    masses = 1 / dot(q.normal, solved(q.M, q.normal))
+    masses = 1 / dot(q.contact.normal, solved(q.M, q.contact.normal))
     if block.follow:
         return masses.reshape(len(masses), -1)[:: -1 if block.reverse else 1]
     return np.repeat(masses.reshape(1, -1), shape[1] // masses.size, axis=1)

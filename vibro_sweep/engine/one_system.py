@@ -136,8 +136,8 @@ class Engine:
     @property
     def compliant(self) -> tuple[bool, bool]:
         """Whether the left stop is, and the right one."""
-        q = self.system.linear
-        return bool(q.is_compliant(-1)), bool(q.is_compliant(1))
+        left, right = self.system.linear.contact.is_compliant((-1, 1))
+        return bool(left), bool(right)
 
     @property
     def turned(self) -> bool:

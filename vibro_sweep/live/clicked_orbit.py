@@ -55,7 +55,7 @@ def settled(view: View, value: float, start: int, end: np.ndarray | None) -> Set
 
 
 def _lead(system: Oscillator) -> int:
-    return RELAXING if system.linear.by_force else 0
+    return RELAXING if system.linear.contact.by_force else 0
 
 
 def _drawn(scene: Scene, system: Oscillator, column: int, start: int) -> Settled:
@@ -85,9 +85,10 @@ def orbit_message(found: Settled) -> tuple[dict[str, np.ndarray], dict[str, Any]
     """Arrays and words on an orbit: samples of its motion, impacts, section points, exponents."""
     system, q = found.system, found.system.linear
     words: dict[str, Any] = {"status": status_of(found.status).text, "period": found.period, "alone": found.alone}
-    words |= {"T": _finite(system.period), "low": _finite(q.low), "high": _finite(q.high), "masses": system.masses}
-    words |= {"normal": q.normal.tolist(), "mapping": found.mapping}
-    words["pressed"] = [bool(soft) for soft in q.is_compliant((-1, 1))]
+    one = q.contact
+    words |= {"T": _finite(system.period), "low": _finite(one.low), "high": _finite(one.high), "masses": system.masses}
+    words |= {"normal": one.normal.tolist(), "mapping": found.mapping}
+    words["pressed"] = [bool(soft) for soft in one.is_compliant((-1, 1))]
     arrays = {"exponents": found.exponents, "errors": found.errors, "section": found.section.astype("f4").ravel()}
     if found.mapping or not is_valid(found.status):
         return arrays, words | {"periods": 0}

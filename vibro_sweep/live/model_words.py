@@ -63,7 +63,7 @@ def model_words(scene: Scene, view: View) -> dict[str, Any]:
         "heights": [[name, _label(name)] for name in heights(scene)],
         "units": {name: _shown(unit, system, display) for name, unit in _declared(scene).items()},
         "title": MODELS[system.model.name].title if system.model.name in MODELS else system.model.name,
-        "stops": [stop if np.isfinite(stop) else None for stop in (system.linear.low, system.linear.high)],
+        "stops": [float(stop) if np.isfinite(stop) else None for stop in system.linear.contact.stop((-1, 1))],
         "colours": _colours(),
         "statuses": {str(code): outcome.text for code, outcome in enumerate(STATUSES, NOT_COMPUTED)},
         "not_settled": NOT_SETTLED,

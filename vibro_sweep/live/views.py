@@ -40,8 +40,8 @@ def heights(scene: Scene) -> list[str]:
     q = system.linear
     speeds = [
         name
-        for name, stop, side in zip(SPEEDS, (q.high, q.low), (1, -1), strict=True)
-        if np.isfinite(stop) and scene.dynamics == "flow" and not q.is_compliant(side)
+        for name, stop, side in zip(SPEEDS, (q.contact.high, q.contact.low), (1, -1), strict=True)
+        if np.isfinite(stop) and scene.dynamics == "flow" and not q.contact.is_compliant(side)
     ]
     peaks = PEAKS if q.compliant else ()
     return [*state(system.masses), *([] if system.gap_is_x1 else ["gap"]), *speeds, *peaks]
@@ -58,7 +58,7 @@ def height_of(system: Oscillator, y: str, arrays: dict[str, np.ndarray]) -> np.n
         return arrays[y][..., None]
     if y not in SPEEDS:
         return arrays[y]
-    rate = sum(n * arrays[name] for n, name in zip(system.linear.normal, needed(system, y), strict=True) if n)
+    rate = sum(n * arrays[name] for n, name in zip(system.linear.contact.normal, needed(system, y), strict=True) if n)
     return rate if SPEEDS[y] == "right" else -rate
 
 

@@ -129,6 +129,6 @@ def _drawn(view: View, settled_orbit: Settled, arrays: Arrays) -> dict[str, np.n
     else:
         states = sections_of(arrays, view.axis, settled_orbit.system)
         named = {name: states[..., i] for i, name in enumerate(state(settled_orbit.system.masses))}
-        named["gap"] = states[..., 0::2] @ settled_orbit.system.linear.normal
+        named["gap"] = states[..., 0::2] @ settled_orbit.system.linear.contact.normal
         points = height_of(settled_orbit.system, view.y, named)
     return {"value": arrays["value"], "unstable": np.minimum(arrays["unstable"], 1).astype("i1"), "y": points.ravel()}

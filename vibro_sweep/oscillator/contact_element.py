@@ -6,11 +6,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Any, Literal
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from vibro_sweep.checks.refusals import ParameterError
 from vibro_sweep.oscillator.checked_model import checked_option
 from vibro_sweep.oscillator.checked_numbers import checked_normal, checked_number
+from vibro_sweep.oscillator.linear import LinearContact, contact
 from vibro_sweep.oscillator.models.declaration import CONTACT, OF_STOPS, WHICH_STOPS
 from vibro_sweep.oscillator.stops import check_stops
 from vibro_sweep.tables.parameters import FREQUENCY, PHASE
@@ -59,6 +61,12 @@ class Contact:
             if not (value is None and quantity.optional):
                 object.__setattr__(self, quantity.name, checked_number(quantity, value, self.stops))
         check_stops(vars(self))
+
+    @property
+    def linear(self) -> LinearContact:
+        """Its numbers, as the engine sees them."""
+        numbers = {entry.name: getattr(self, entry.name) for entry in fields(self)}
+        return contact(np.array(numbers.pop("contact_normal")), **numbers)
 
     def __repr__(self) -> str:
         arguments = {entry.name: getattr(self, entry.name) for entry in fields(self)}

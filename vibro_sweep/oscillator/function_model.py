@@ -98,10 +98,11 @@ def _name(function: Callable) -> str:
 
 def sizes_of(q: Linear) -> dict[str, np.ndarray]:
     """The sizes (...) that random starts and comparisons need, by the names that they have for all oscillators."""
-    two, right = np.isfinite(q.low) & np.isfinite(q.high), np.isfinite(q.high)
+    low, high = np.asarray(q.contact.low), np.asarray(q.contact.high)
+    two, right = np.isfinite(low) & np.isfinite(high), np.isfinite(high)
     with np.errstate(invalid="ignore"):  # of one stop
-        b = np.where(two, (q.high - q.low) / 2, np.where(right, q.high, -np.asarray(q.low)))
-        offset = np.where(two, (q.high + q.low) / 2, 0.0)
+        b = np.where(two, (high - low) / 2, np.where(right, high, -low))
+        offset = np.where(two, (high + low) / 2, 0.0)
     return {"omega": q.omega, "tau": q.tau, "b": b, "offset": offset}
 
 
@@ -109,13 +110,14 @@ def stored_of(q: Linear) -> dict[str, np.ndarray]:
     """Every number (...) of a stack by the name that files have for it: M11, M12, ..; along1; omega; low; R_low; ..."""
     numbers_of_fields = {}
     for field in STORED:
-        values = getattr(q, field)
+        values = getattr(q.contact if field == "normal" else q, field)
         n = values.shape[-1]
         if field in ("M", "K", "C"):
             numbers_of_fields |= {f"{field}{i + 1}{j + 1}": values[..., i, j] for i in range(n) for j in range(i, n)}
         else:
             numbers_of_fields |= {f"{field}{i + 1}": values[..., i] for i in range(n)}
-    return numbers_of_fields | {name: getattr(q, name) for name in ("omega", "tau", "low", "high", "R_low", "R_high")}
+    stops = {name: getattr(q.contact, name) for name in ("low", "high", "R_low", "R_high")}
+    return numbers_of_fields | {"omega": q.omega, "tau": q.tau} | stops
 
 
 def stored_names(masses: int) -> dict[str, Parameter]:

@@ -62,10 +62,10 @@ def grazing(system: Oscillator) -> Grazing:
     touch = _of_the_paper(system) if paper else _of_any(system)
     q = system.linear
     offset = getattr(system, "offset", 0.0)
-    rest = static_state(q)
-    middle, size = (
-        (float(q.normal @ rest), float(np.abs(q.normal * rest).sum())) if rest is not None else (math.nan,) * 2
-    )
+    rest, normal = static_state(q), q.contact.normal
+    middle, size = math.nan, math.nan
+    if rest is not None:
+        middle, size = float(normal @ rest), float(np.abs(normal * rest).sum())
     if abs(middle - offset) <= ROUNDING * size:  # the same, but for the rounding of the static state
         middle = offset
     right, left = touch.b + (middle - offset), touch.b - (middle - offset)
@@ -101,7 +101,7 @@ def _of_any(system: Oscillator) -> Grazing:
     determinant = float(left_over.prod().real) if unique else 0.0
     response = gap_response(q)
     if response is None:
-        nowhere = (math.nan,) * 2 * len(q.normal)
+        nowhere = (math.nan,) * 2 * q.masses
         return Grazing(math.nan, 0.0, nowhere, determinant, False, math.nan, math.nan)
     tau = grazing_phase(q)
     turned = amplitudes(q) * np.exp(1j * tau)

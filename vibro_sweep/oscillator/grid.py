@@ -6,7 +6,7 @@ import math
 import numpy as np
 
 from vibro_sweep.oscillator.function_model import FunctionModel, sizes_of, stored_of
-from vibro_sweep.oscillator.linear import Linear, stack_of, stacked
+from vibro_sweep.oscillator.linear import Linear, mapped, stack_of, stacked
 from vibro_sweep.oscillator.oscillator import Oscillator, following, in_closed_form
 from vibro_sweep.oscillator.other_words import with_omega
 from vibro_sweep.oscillator.paper_motion import resolved
@@ -55,7 +55,7 @@ def linears(system: Oscillator, axes: dict[str, np.ndarray]) -> Linear:
     rows = zip(*(values.ravel().tolist() for values in changes.values()), strict=True) if changes else [()]
     each = stacked([_one(system.family, dict(zip(changes, row, strict=True))) for row in rows])
     count = math.prod(shape)
-    return Linear(*(np.broadcast_to(x, (count, *x.shape[1:])).reshape(*shape, *x.shape[1:]) for x in each))
+    return mapped(lambda name, x: np.broadcast_to(x, (count, *x.shape[1:])).reshape(*shape, *x.shape[1:]), each)
 
 
 def digest(system: FunctionModel, axes: dict[str, np.ndarray]) -> str:

@@ -1,14 +1,16 @@
-"""A linear oscillator with one contact, as the engine sees all of them: any number of masses N.
+"""A linear oscillator with contacts, as the engine sees all of them: any number of masses N.
 
     M x'' + C x' + K x = constant + sine sin(omega t + tau) + cosine cos(omega t + tau),   low <= n.x <= high
 
-An impulse acts along M^-1 n: it changes the velocity of the gap g = n.x, with the restitution of the stop that is hit.
+with n, low and high of each contact. An impulse acts along M^-1 n: it changes the velocity of the gap g = n.x, with the
+restitution of the stop that is hit. What is computed of an oscillator is so far that of one contact, `Linear.contact`.
 """
 
 import math
+import operator
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property, lru_cache, wraps
+from functools import cached_property, lru_cache, reduce, wraps
 from operator import attrgetter
 from typing import Any, NamedTuple
 
@@ -23,22 +25,19 @@ from vibro_sweep.oscillator.steady import gap_responses, grazing_phases, respons
 from vibro_sweep.oscillator.stops import NUMBERS, stop_of, why_rigid
 from vibro_sweep.tables.parameters import CYCLES, FREQUENCY
 
-MATRICES = ("M", "K", "C", "normal", "omega")  # fields that move free modes,
+MATRICES = ("M", "K", "C", "contact.normal", "omega")  # numbers that move free modes,
 FORCED = (*MATRICES, "constant", "sine", "cosine")  # the steady motion too,
 MOTION = (*FORCED, "tau")  # and the flight from a time on
-RANKS = {"M": 2, "K": 2, "C": 2, "normal": 1, "constant": 1, "sine": 1, "cosine": 1}  # fields that are no numbers
+RANKS = dict.fromkeys(("M", "K", "C"), 2) | dict.fromkeys(("contact.normal", "constant", "sine", "cosine"), 1)
 STOP_LAW = ("k", "c", "p")  # numbers of a compliant stop: fields with _low and _high
 LEAST = 1e-100  # stiffness of a stop that is a damper alone: no double is that small beside another of a machine
 STEP = 1e-100  # of the complex step: its square underflows, so that a derivative has no truncation error
 
 
-class Linear(NamedTuple):
-    """The oscillator's numbers; and, with the same fields, their derivatives by one parameter.
+class LinearContact(NamedTuple):
+    """The numbers of a contact; of a slope their derivatives.
 
-    M, K, C : (N, N) matrices of masses, stiffnesses and dampers
     normal : (N,) n of the gap n.x
-    constant, sine, cosine : (N,) constant force, amplitudes of sin(omega t + tau) and cos(omega t + tau)
-    omega, tau : frequency, and phase in radians; tau None: the steady gap is largest at t = 0
     low, high : positions of the stops; infinite where there is none
     R_low, R_high : their coefficients of restitution
     middle : the offset about which the stops lie
@@ -50,23 +49,12 @@ class Linear(NamedTuple):
     --------
     >>> import vibro_sweep as vs
     >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
-    >>> matrices = system.linear
-    >>> matrices.K
-    array([[ 1., -1.],
-           [-1.,  6.]])
-    >>> float(matrices.low), float(matrices.high), bool(matrices.symmetric)
-    (-4.0, 4.0, True)
+    >>> contact = system.linear.contacts[0]
+    >>> contact.normal.tolist(), float(contact.stop(-1)), contact.restitution([-1, 1]).tolist()
+    ([1.0, 0.0], -4.0, [0.8, 0.8])
     """
 
-    M: np.ndarray
-    K: np.ndarray
-    C: np.ndarray
     normal: np.ndarray
-    constant: np.ndarray
-    sine: np.ndarray
-    cosine: np.ndarray
-    omega: float
-    tau: float | None
     low: float
     high: float
     R_low: float
@@ -82,10 +70,9 @@ class Linear(NamedTuple):
 
     @property
     def symmetric(self) -> bool:
-        """Whether x -> -x, t -> t + T/2 maps motions to motions."""
-        kind = self.k_low, self.c_low, self.p_low
-        alike = kind == (self.k_high, self.c_high, self.p_high) and (kind[0] > 0 or self.R_low == self.R_high)
-        return self.low == -self.high and alike and not np.any(self.constant)
+        """Whether gap -> -gap maps its stops to its stops."""
+        left, right = self.law(-1), self.law(1)
+        return self.low == -self.high and left == right and (left[0] > 0 or self.R_low == self.R_high)
 
     @property
     def compliant(self) -> bool:
@@ -104,6 +91,76 @@ class Linear(NamedTuple):
         """Coefficients of restitution of the stops on these sides (+1 high, -1 low)."""
         return np.where(np.asarray(sides) > 0, self.R_high, self.R_low)
 
+    def law(self, side: int) -> tuple:
+        """Stiffness, damping and preload of the stop on this side."""
+        return (self.k_high, self.c_high, self.p_high) if side > 0 else (self.k_low, self.c_low, self.p_low)
+
+
+class Linear(NamedTuple):
+    """The oscillator's numbers; and, with the same fields, their derivatives by one parameter.
+
+    M, K, C : (N, N) matrices of masses, stiffnesses and dampers
+    constant, sine, cosine : (N,) constant force, amplitudes of sin(omega t + tau) and cos(omega t + tau)
+    omega, tau : frequency, and phase in radians; tau None: the steady gap is largest at t = 0
+    contacts : `LinearContact` of each
+
+    Examples
+    --------
+    >>> import vibro_sweep as vs
+    >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
+    >>> matrices = system.linear
+    >>> matrices.K
+    array([[ 1., -1.],
+           [-1.,  6.]])
+    >>> float(matrices.contacts[0].low), float(matrices.contacts[0].high), bool(matrices.symmetric)
+    (-4.0, 4.0, True)
+    """
+
+    M: np.ndarray
+    K: np.ndarray
+    C: np.ndarray
+    constant: np.ndarray
+    sine: np.ndarray
+    cosine: np.ndarray
+    omega: float
+    tau: float | None
+    contacts: Sequence[LinearContact]
+
+    @property
+    def masses(self) -> int:
+        """N."""
+        return np.shape(self.M)[-1]
+
+    @property
+    def contact(self) -> LinearContact:
+        """The only contact."""
+        (only,) = self.contacts
+        return only
+
+    @property
+    def symmetric(self) -> bool:
+        """Whether x -> -x, t -> t + T/2 maps motions to motions."""
+        return all(one.symmetric for one in self.contacts) and not np.any(self.constant)
+
+    @property
+    def compliant(self) -> bool:
+        """Whether a stop is: then there is motion beyond it."""
+        return reduce(operator.or_, (one.compliant for one in self.contacts))
+
+    def with_contact(self, **numbers) -> "Linear":
+        """The same with other numbers of its only contact."""
+        return self._replace(contacts=(self.contact._replace(**numbers),))
+
+
+def mapped(function: Callable, *oscillators: Linear) -> Linear:
+    """The oscillator whose numbers are `function(name, ...)` of those of these; names are M, ..., contact.low, ..."""
+    *fields, contacts = zip(*oscillators, strict=True)
+    each = [
+        LinearContact(*(function(f"contact.{name}", *x) for name, *x in zip(LinearContact._fields, *same, strict=True)))
+        for same in zip(*contacts, strict=True)
+    ]
+    return Linear(*(function(name, *x) for name, x in zip(Linear._fields, fields, strict=False)), tuple(each))
+
 
 @dataclass(frozen=True)
 class Family:
@@ -118,7 +175,7 @@ class Family:
     >>> import vibro_sweep as vs
     >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
     >>> family = system.family
-    >>> float(family.derivative("b").high), family.replace(b=5.0).numbers["b"]
+    >>> float(family.derivative("b").contacts[0].high), family.replace(b=5.0).numbers["b"]
     (1.0, 5.0)
     """
 
@@ -154,24 +211,32 @@ class Family:
     def derivative(self, name: str, linear: Linear | None = None) -> Linear:
         """Derivatives of all fields by the parameter `name`, exact to rounding. linear: this one's, if it is known."""
         step = self.built_with({name: self.free[name] + 1j * STEP})
-        parts = {}
-        for field, value in step._asdict().items():
-            if field != "tau":
-                parts[field] = np.imag(value) / STEP if np.iscomplexobj(value) else np.zeros(np.shape(value))
-        slope = Linear(**parts, tau=0.0 if step.tau is None else float(np.imag(step.tau)) / STEP)
+        slope = mapped(_imaginary, step)
         if step.tau is None:
             slope = slope._replace(tau=grazing_phase_slope(linear or self.linear, slope))
         return slope
 
 
+def _imaginary(name: str, value) -> np.ndarray | float:
+    """What the complex step of a derivative has left of a number."""
+    if name == "tau":
+        return 0.0 if value is None else float(np.imag(value)) / STEP
+    return np.imag(value) / STEP if np.iscomplexobj(value) else np.zeros(np.shape(value))
+
+
+def stepped(q: Linear, slope: Linear) -> Linear:
+    """q + i STEP slope: what a function makes of it has STEP times its derivative as imaginary part."""
+    return mapped(lambda name, value, change: value + 1j * STEP * np.asarray(change), q, slope)
+
+
 def selected(q: Linear, which) -> Linear:
     """These oscillators of a stack, by an index or a mask; one of them by a number."""
-    return Linear(*(None if field is None else np.asarray(field)[which] for field in q))
+    return mapped(lambda name, x: None if x is None else np.asarray(x)[which], q)
 
 
 def stacked(each: Sequence[Linear]) -> Linear:
     """A stack of oscillators, of each field (n, ...)."""
-    return Linear(*(np.stack(field) for field in zip(*each, strict=True)))
+    return mapped(lambda name, *values: np.stack(values), *each)
 
 
 class KeyOfFields:
@@ -249,12 +314,13 @@ def gap_response(q: Linear) -> complex | None:
 
 
 def grazing_phase_slope(q: Linear, slope: Linear) -> float:
-    if not any(np.any(getattr(slope, name)) for name in FORCED):
+    if not any(np.any(values) for values in attrgetter(*FORCED)(slope)):
         return 0.0
     response = gap_response(q)
     if response is None:
         return 0.0
-    return -float(np.imag((slope.normal @ amplitudes(q) + q.normal @ amplitude_slopes(q, slope)) / response))
+    moved = slope.contact.normal @ amplitudes(q) + q.contact.normal @ amplitude_slopes(q, slope)
+    return -float(np.imag(moved / response))
 
 
 def static_state(q: Linear) -> np.ndarray | None:
@@ -268,12 +334,13 @@ def static_state(q: Linear) -> np.ndarray | None:
 
 def stack_of(family: Family, shape: tuple[int, ...], changes: dict[str, np.ndarray]) -> Linear:
     """The oscillators of a family with these numbers, arrays that broadcast to `shape`: a stack, phases resolved."""
-    fields = {name: x for name, x in family.built_with(changes)._asdict().items() if x is not None}
-    q = Linear(**{"tau": None} | {name: _everywhere(name, x, shape) for name, x in fields.items()})
+    built = family.built_with(changes)
+    q = mapped(lambda name, x: None if x is None else _everywhere(name, x, shape), built)
     if q.tau is not None:
         return q
-    alike = np.broadcast_shapes(*(_lead(name, fields[name]) for name in FORCED))  # of those that differ in stops alone
-    forced = q._replace(**{name: _everywhere(name, fields[name], alike) for name in FORCED})
+    leads = [_lead(name, x) for name, x in zip(FORCED, attrgetter(*FORCED)(built), strict=True)]
+    alike = np.broadcast_shapes(*leads)  # of those that differ in stops alone
+    forced = mapped(lambda name, x: _everywhere(name, x, alike) if name in FORCED else x, built)
     return q._replace(tau=np.broadcast_to(grazing_phases(gap_responses(forced, steady_amplitudes(forced))), shape))
 
 
@@ -291,11 +358,12 @@ def rest_state(q: Linear) -> np.ndarray:
 
     Held: the gap is zero's where that is between the stops; else that of the stop, and no other force acts along n.
     """
-    gap = np.minimum(np.maximum(0.0, q.low), q.high)
-    result, held = np.zeros(q.normal.shape), gap != 0.0
+    gap = np.minimum(np.maximum(0.0, q.contact.low), q.contact.high)
+    result, held = np.zeros(q.contact.normal.shape), gap != 0.0
     if held.any():
         q = selected(q, held)
-        result[held] = least_squares(bordered(q.K, q.normal), np.append(q.constant, gap[held][..., None], -1))[..., :-1]
+        forces = np.append(q.constant, gap[held][..., None], -1)
+        result[held] = least_squares(bordered(q.K, q.contact.normal), forces)[..., :-1]
     return result
 
 
@@ -307,8 +375,8 @@ def bordered(K: np.ndarray, normal: np.ndarray) -> np.ndarray:
     return result
 
 
-def contact(*, b, offset=0.0, stops="both", release="displacement", **numbers) -> dict:
-    """The fields of `Linear` that say where the stops are, and of what kind; also for complex numbers.
+def contact(normal, *, b, offset=0.0, stops="both", release="displacement", **numbers) -> LinearContact:
+    """A contact from the numbers that describe it; also from complex ones.
 
     numbers : those of the stops, by name
     """
@@ -316,15 +384,16 @@ def contact(*, b, offset=0.0, stops="both", release="displacement", **numbers) -
         raise TypeError(f"stops have no {', '.join(sorted(unknown))}")
     low, high = stop_of(numbers, "left"), stop_of(numbers, "right")
     fields = {"R": ("R", np.nan), "c": ("c_stop", 0.0), "p": ("preload", 0.0)}
-    return {
-        "low": offset - b if stops != "right" else -np.inf,
-        "high": offset + b if stops != "left" else np.inf,
-        "middle": offset,
+    return LinearContact(
+        normal=normal,
+        low=offset - b if stops != "right" else -np.inf,
+        high=offset + b if stops != "left" else np.inf,
+        middle=offset,
+        by_force=release == "force" and COMPLIANT in (low.law, high.law),
         **{f"{field}_low": low.number(*number) for field, number in fields.items()},
         **{f"{field}_high": high.number(*number) for field, number in fields.items()},
         **{f"k_{name}": stop.number("k_stop", -LEAST) + LEAST for name, stop in (("low", low), ("high", high))},
-        "by_force": release == "force" and COMPLIANT in (low.law, high.law),
-    }
+    )
 
 
 def family_of(system) -> Family:
@@ -351,7 +420,7 @@ def forcing_period(q: Linear) -> float:
 
 def roots(q: Linear) -> np.ndarray:
     """The 2N roots lambda of det(lambda^2 M + lambda C + K) = 0; NaN beyond the range of the floats."""
-    n = len(q.normal)
+    n = q.masses
     inverse = np.linalg.inv(q.M)
     with np.errstate(all="ignore"):
         matrix = np.block([[np.zeros((n, n)), np.eye(n)], [-inverse @ q.K, -inverse @ q.C]])
@@ -360,8 +429,8 @@ def roots(q: Linear) -> np.ndarray:
 
 def push_of(q: Linear) -> np.ndarray:
     """(N,): what an impulse that changes the gap's velocity by 1 does to the masses, p = M^-1 n/(n.M^-1 n)."""
-    push = np.linalg.solve(q.M, q.normal)
-    return push / (q.normal @ push)
+    push = np.linalg.solve(q.M, q.contact.normal)
+    return push / (q.contact.normal @ push)
 
 
 def grazing_state(q: Linear) -> np.ndarray:
@@ -369,7 +438,7 @@ def grazing_state(q: Linear) -> np.ndarray:
 
     Infinite or NaN where there is no steady motion.
     """
-    x, n = amplitudes(q), q.normal
+    x, n = amplitudes(q), q.contact.normal
     x = x * np.exp(-1j * np.angle(n @ x))
     state = np.stack([x.real, -q.omega * x.imag], -1)
     state[:, 1] -= push_of(q) * (n @ state[:, 1])  # but for rounding it is zero

@@ -209,7 +209,7 @@ class Oscillator:
     def contacts(self) -> tuple[Contact, ...]:
         """Its contacts; one is computed, an oscillator with several is made, printed and saved alone."""
         numbers_of_first = {name: self.arguments[name] for name in CONTACT_NAMES if name in self.arguments}
-        normal = linear_of(self.model, self.arguments).normal
+        normal = linear_of(self.model, self.arguments).contact.normal
         return Contact(**numbers_of_first | {"contact_normal": normal}), *self.others
 
     @property
@@ -260,7 +260,13 @@ class Oscillator:
         """The same oscillator by its numbers, with their derivatives. Raises ArgumentError where it has several
         contacts."""
         _check_one_contact(self)
-        return Family(partial(_build, self.model.name, tuple(self.arguments.items())), completed(self.numbers))
+        return self._family
+
+    @property
+    def _family(self) -> Family:
+        """The same with all its contacts."""
+        build = partial(_build, self.model.name, tuple(self.arguments.items()), self.others)
+        return Family(build, completed(self.numbers))
 
     @cached_property
     def linear(self) -> Linear:
@@ -270,7 +276,7 @@ class Oscillator:
     @property
     def gap_is_x1(self) -> bool:
         """Whether the contact is that of mass 1 with a wall."""
-        along = self.linear.normal
+        along = self.linear.contact.normal
         return bool(along[0] == 1 and not along[1:].any())
 
     @property
@@ -358,8 +364,9 @@ def _check_one_contact(system: Oscillator) -> None:
         raise ArgumentError(f"system: it has {1 + len(system.others)} contacts; those with one are computed; {PAGE}")
 
 
-def _build(name: str, arguments: tuple[tuple[str, Any], ...], /, **numbers) -> Linear:
-    return linear_of(MODELS[name], dict(arguments) | numbers)
+def _build(name: str, arguments: tuple[tuple[str, Any], ...], others: tuple[Contact, ...], /, **numbers) -> Linear:
+    q = linear_of(MODELS[name], dict(arguments) | numbers)
+    return q._replace(contacts=(*q.contacts, *(one.linear for one in others)))
 
 
 POSITIONAL = inspect.Parameter.POSITIONAL_OR_KEYWORD

@@ -9,13 +9,13 @@ import math
 
 import numpy as np
 
-from vibro_sweep.oscillator.linear import Linear
+from vibro_sweep.oscillator.linear import Linear, mapped
 from vibro_sweep.oscillator.stacks import unrepeated
 from vibro_sweep.tables.observables import variables
 from vibro_sweep.tables.units import power_of_seconds
 
-BY_RATE = {"C": 1, "omega": 1, "c_low": 1, "c_high": 1} | dict.fromkeys(
-    ("K", "constant", "sine", "cosine", "k_low", "k_high", "p_low", "p_high"), 2
+BY_RATE = {"C": 1, "omega": 1, "contact.c_low": 1, "contact.c_high": 1} | dict.fromkeys(
+    ("K", "constant", "sine", "cosine", *(f"contact.{name}" for name in ("k_low", "k_high", "p_low", "p_high"))), 2
 )  # number: the power of a time in its unit is minus this
 
 FARTHEST = 300  # power of two
@@ -29,7 +29,7 @@ def rate_of(omega: float) -> float:
 @np.errstate(over="ignore")  # numbers that leave the range of the floats are a status
 def in_own_time(q: Linear, rate: float) -> Linear:
     """Oscillators with 1/rate as the unit of time."""
-    return q._replace(**{name: _scaled(getattr(q, name), rate**power) for name, power in BY_RATE.items()})
+    return mapped(lambda name, x: _scaled(x, rate ** BY_RATE[name]) if name in BY_RATE else x, q)
 
 
 def _scaled(x, factor: float):

@@ -89,8 +89,8 @@ def quiet(system: Oscillator, parameter: str, bounds: tuple[float, float]) -> Qu
 def free_motion(q: Linear) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Of a stack of oscillators the middle of the free motion of the gap, its amplitude, and the room that it leaves
     before the nearest stop; NaN where there is no such motion."""
-    middle, size = dot(q.normal, static_states(q)), np.abs(gap_responses(q, steady_amplitudes(q)))
-    room = np.minimum(np.asarray(q.high) - middle, middle - np.asarray(q.low)) - size
+    middle, size = dot(q.contact.normal, static_states(q)), np.abs(gap_responses(q, steady_amplitudes(q)))
+    room = np.minimum(np.asarray(q.contact.high) - middle, middle - np.asarray(q.contact.low)) - size
     return middle, size, room
 
 

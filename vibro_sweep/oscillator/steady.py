@@ -58,7 +58,7 @@ def steady_amplitudes(q) -> np.ndarray:
 
 def gap_responses(q, X: np.ndarray) -> np.ndarray:
     """G (...) of the steady gap g_s + Re(G e^{i(omega t + tau)}); NaN where there is no steady motion."""
-    G = dot(q.normal + 0j, X)
+    G = dot(q.contact.normal + 0j, X)
     return np.where(np.isfinite(G) & finite(static_states(q), 1), G, np.nan)
 
 

@@ -92,7 +92,7 @@ def _contact_problems(form: Form, system: Oscillator) -> list[str]:
     problems = []
     if form.dynamics == "map":
         problems.append(problem("dynamics", form.dynamics, f"needs rigid stops: {why_rigid('map')}"))
-    if form.section.kind == "impact" and q.is_compliant(1 if form.section.stop == "right" else -1):
+    if form.section.kind == "impact" and q.contact.is_compliant(1 if form.section.stop == "right" else -1):
         text = f"{why_rigid('section')}; take `kind: phase`, or the other stop"
         problems.append(problem("section.stop", form.section.stop, text))
     return problems

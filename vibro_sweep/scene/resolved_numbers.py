@@ -52,7 +52,7 @@ def attributes(scene: Scene) -> dict[str, Any]:
     if isinstance(system, FunctionModel):
         result = {name: value for name, value in result.items() if name != "tau"}
     result |= {} if system.model.name == DEFAULT else {"type": system.model.name}
-    result |= {} if system.gap_is_x1 else {"contact_normal": system.linear.normal}
+    result |= {} if system.gap_is_x1 else {"contact_normal": system.linear.contact.normal}
     result |= {"dynamics": scene.dynamics}
     if scene.dynamics == "map":
         result |= {"order": scene.order} | ({} if scene.expand_at is None else {"expand_at": scene.expand_at})
@@ -128,7 +128,7 @@ def _of_built(q: Linear) -> dict[str, np.ndarray]:
 
 def _free_motion(q: Linear) -> tuple[np.ndarray, np.ndarray]:
     """Amplitude of the gap and its middle, for each oscillator of a stack; NaN where there are none."""
-    return modulus(gap_responses(q, steady_amplitudes(q))), dot(q.normal, static_states(q))
+    return modulus(gap_responses(q, steady_amplitudes(q))), dot(q.contact.normal, static_states(q))
 
 
 def angular(scene: Scene) -> dict[str, np.ndarray]:

@@ -90,7 +90,7 @@ def start_problems(form: Form, sweep, system: Oscillator | None, masses: int) ->
 
 def _behind(form: Form, sweep, system: Oscillator, names, swept) -> list[str]:
     """States with the gap behind a stop, at the corners of the sweep: both are linear in what is swept."""
-    along = system.linear.normal
+    along = system.linear.contact.normal
     used = [name for i, name in enumerate(names[::2]) if along[i]]
     path = next((f"sweep.{name}" for name in used if name in swept), f"start.{used[0]}")
     gaps = np.zeros(1)
@@ -98,7 +98,8 @@ def _behind(form: Form, sweep, system: Oscillator, names, swept) -> list[str]:
         values = sweep.get(START[name], [getattr(form.start, name)])
         gaps = np.add.outer(gaps, along[i] * np.array([min(values), max(values)])).ravel()
     low, high = stops_of(system, sweep)
-    low, high = -np.inf if system.linear.k_low > 0 else low, np.inf if system.linear.k_high > 0 else high
+    left, right = system.linear.contact.is_compliant((-1, 1))
+    low, high = -np.inf if left else low, np.inf if right else high
     if low <= gaps.min() and gaps.max() <= high:
         return []
     worst = float(gaps.max() if gaps.max() > high else gaps.min())
@@ -114,7 +115,7 @@ def _behind(form: Form, sweep, system: Oscillator, names, swept) -> list[str]:
 def stops_of(system: Oscillator, sweep) -> tuple[float, float]:
     """The narrowest positions of the stops in a sweep, infinite where there is none."""
     if isinstance(system, FunctionModel):
-        return system.linear.low, system.linear.high
+        return system.linear.contact.low, system.linear.contact.high
     b, offset = (sweep.get(name, [system.numbers.get(name, 0.0)]) for name in ("b", "offset"))
     stops = system.options.get("stops", "both")
     low = float(max(offset) - min(b)) if stops != "right" else -np.inf

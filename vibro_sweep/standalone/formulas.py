@@ -4,6 +4,7 @@ So what a page computes with is what the model says, of any model whose numbers 
 of its parameters.
 """
 
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -12,8 +13,8 @@ from vibro_sweep.oscillator.linear import MOTION
 from vibro_sweep.oscillator.oscillator import Oscillator
 from vibro_sweep.oscillator.own_time import BY_RATE
 
-STOPS = ("low", "high", "R_low", "R_high")
-LAWS = ("k_low", "c_low", "p_low", "k_high", "c_high", "p_high")
+STOPS = tuple(f"contact.{name}" for name in ("low", "high", "R_low", "R_high"))
+LAWS = tuple(f"contact.{name}" for name in ("k_low", "c_low", "p_low", "k_high", "c_high", "p_high"))
 
 
 class Symbol:
@@ -92,7 +93,7 @@ def formulas_of(system: Oscillator) -> list[tuple[str, int]] | None:
         linear = family.build(**symbols)
         result = []
         for name in (*MOTION, *STOPS, *LAWS):
-            value = getattr(linear, name)
+            value = attrgetter(name)(linear)
             entries = np.ravel(np.array(0.0 if value is None else value))
             result += [(_text(entry), BY_RATE.get(name, 0)) for entry in entries.tolist()]
         return result

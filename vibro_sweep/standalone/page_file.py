@@ -127,7 +127,7 @@ def _known(scene: Scene) -> dict[str, Any]:
         "numbers": {name: numbers[name] for name in variable if numbers[name] is not None},
         "leaders": {name: system.described[name].follows for name in variable if numbers[name] is None},
         "ranges": {name: _range(system, name) for name in variable},
-        "release": int(system.linear.by_force),
+        "release": int(system.linear.contact.by_force),
         "most": MOST,
     }
 

@@ -97,7 +97,7 @@ def _multipliers(start: Solution, name: str, oscillators: list[Linear], rows: Ro
             family = start.family.replace(**{name: float(p)})
             result.append(replace(start, family=family, u=np.concatenate([t, D, ends])).multipliers)
             continue
-        contacts[:, 1] = 1 + q.restitution(sides)
+        contacts[:, 1] = 1 + q.contact.restitution(sides)
         P, u = forcing_period(q) / 2 * start.half_periods, np.concatenate([t, D])
         result.append(multipliers_of(flow(q), start.sigma, P, contacts, u, motion))
     values = np.array(result) if start.sigma == 1 else squared(np.array(result))

@@ -71,7 +71,7 @@ def start_of_run(
 def changes_rests(solution: Solution, name: str) -> bool:
     """Whether this parameter is the restitution of a stop on which the mass rests after one impact, as at R = 0."""
     resting = np.array(solution.sides)[list(solution.rests)]
-    return bool(solution.rests) and bool(np.any(solution.family.derivative(name).restitution(resting)))
+    return bool(solution.rests) and bool(np.any(solution.family.derivative(name).contact.restitution(resting)))
 
 
 def is_special(point: Point | FreePoint) -> bool:

@@ -64,7 +64,7 @@ class CompiledStepper:
     def _masses(self, p: np.ndarray, states: np.ndarray) -> np.ndarray:
         """x1 v1 .. xN vN from contact coordinates."""
         of, (slope,) = self.curve.oscillators, self.curve.oscillators.slopes
-        if np.any(slope.M) or np.any(slope.normal):
+        if np.any(slope.M) or np.any(slope.contact.normal):
             values = [of.at([value]).linear for value in p.tolist()]
             found = [contact_coordinates(q).to_masses(state) for q, state in zip(values, states, strict=True)]
             return np.reshape(found, states.shape)

@@ -147,7 +147,7 @@ def _highest(a: FreePoint, b: FreePoint) -> FreePoint | None:
         def distance(value: float, side: int = side) -> float:
             q = a.solution.family.replace(**{a.curve.names[0]: value}).linear
             mean, swing = steady_gap(q)
-            return side * (float(q.stop(side)) - mean) - abs(swing)
+            return side * (float(q.contact.stop(side)) - mean) - abs(swing)
 
         if all(distance(end + step) < distance(end) for end, step in zip(ends, (aside, -aside), strict=True)):
             least = minimize_scalar(distance, bounds=ends, method="bounded", options={"xatol": aside})

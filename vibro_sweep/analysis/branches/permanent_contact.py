@@ -34,8 +34,8 @@ def permanent_contact(s: Solution, name: str, unit: float) -> PermanentContact |
     if s.K != 1 or s.sigma != 1 or not s.rests or not s.contacts[0]:
         return None
     side, last = s.sides[0], s.family.free[name]
-    damping, preload = (q.c_high, q.p_high) if side > 0 else (q.c_low, q.p_low)
-    leaves_by_force = q.by_force and damping > 0 and not preload > 0  # before it is back at the stop's place
+    _, damping, preload = q.contact.law(side)
+    leaves_by_force = q.contact.by_force and damping > 0 and not preload > 0  # before it is back at the stop's place
     if leaves_by_force or not q.omega * (s.times[0] + s.P - s.ends[0]) < SHORT:
         return None
 
@@ -66,19 +66,19 @@ def permanent_contact(s: Solution, name: str, unit: float) -> PermanentContact |
 
 def pressed(q: Linear, side: int) -> Linear:
     """The oscillator that never leaves the stop on this side: M x'' + (C + c n n^T) x' + (K + k n n^T) x = ..."""
-    k, c, p, stop = (q.k_high, q.c_high, q.p_high, q.high) if side > 0 else (q.k_low, q.c_low, q.p_low, q.low)
-    both = np.outer(q.normal, q.normal)
-    return q._replace(K=q.K + k * both, C=q.C + c * both, constant=q.constant + (k * stop - side * p) * q.normal)
+    (k, c, p), normal = q.contact.law(side), q.contact.normal
+    both, force = np.outer(normal, normal), k * float(q.contact.stop(side)) - side * p
+    return q._replace(K=q.K + k * both, C=q.C + c * both, constant=q.constant + force * normal)
 
 
 def _least(q: Linear, side: int) -> tuple[float, SteadyGap]:
     """The least displacement into the stop of the motion that never leaves it, and this motion."""
     gap = steady_gap(pressed(q, side))
-    return side * (gap.mean - float(q.stop(side))) - abs(gap.swing), gap
+    return side * (gap.mean - float(q.contact.stop(side))) - abs(gap.swing), gap
 
 
 def _multipliers(q: Linear, P: float) -> np.ndarray:
     """Those of a linear oscillator over the time P, by falling modulus."""
-    N = len(q.normal)
+    N = q.masses
     rates = np.linalg.eigvals(np.block([[np.zeros((N, N)), np.eye(N)], [np.linalg.solve(q.M, -np.hstack([q.K, q.C]))]]))
     return np.array(sorted(np.exp(rates * P), key=lambda mu: (-abs(mu), -mu.imag)))

@@ -1,6 +1,7 @@
 """How large a change of a parameter is, in parts of what changes the oscillator as a whole, in any units."""
 
 import math
+from operator import attrgetter
 
 import numpy as np
 
@@ -23,19 +24,19 @@ def least_size(solution: Solution, name: str) -> float:
     """A thousandth of what changes the oscillator as a whole: M, K + omega^2 M, C + omega M, n, a force by what moves
     the gap by its size, omega, tau by 1, R by 1, or a stop by the size of the gap."""
     q, slope, gap = solution.family.linear, solution.family.derivative(name), solution.size_of_gap
-    M, along, omega = (np.abs(x).max() for x in (q.M, q.normal, q.omega))
+    M, along, omega = (np.abs(x).max() for x in (q.M, q.contact.normal, q.omega))
     inertia = omega**2 * M
     parts = {
         "M": M,
         "K": np.abs(q.K).max() + inertia,
         "C": np.abs(q.C).max() + omega * M,
-        "normal": along,
+        "contact.normal": along,
         **dict.fromkeys(("constant", "sine", "cosine"), inertia * gap / along),
         "omega": omega,
-        **dict.fromkeys(("low", "high"), gap),
-        **dict.fromkeys(("tau", "R_low", "R_high"), 1.0),
+        **dict.fromkeys(("contact.low", "contact.high"), gap),
+        **dict.fromkeys(("tau", "contact.R_low", "contact.R_high"), 1.0),
     }
-    rates = [np.abs(getattr(slope, part)).max() / size for part, size in parts.items()]
+    rates = [np.abs(attrgetter(part)(slope)).max() / size for part, size in parts.items()]
     rate = max((rate for rate in rates if math.isfinite(rate)), default=0.0)
     return float(LEAST / rate) if rate > 0 else LEAST  # of what changes nothing any size will do
 

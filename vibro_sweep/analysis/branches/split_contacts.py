@@ -69,9 +69,9 @@ def in_two(s: Solution) -> Solution:
     orbit, q, found = PeriodicOrbit(None, "ok", s, (0, 0)), s.family.linear, []
     for index, end in zip(s.rests, s.ends.tolist(), strict=True):
         times = np.linspace(s.times[index], end, WITHIN)
-        depth = s.sides[index] * (orbit.sample(times)[:, 0::2] @ q.normal)
+        depth = s.sides[index] * (orbit.sample(times)[:, 0::2] @ q.contact.normal)
         least = np.flatnonzero((depth[1:-1] <= depth[:-2]) & (depth[1:-1] <= depth[2:])) + 1
-        found += [(depth[k] - s.sides[index] * q.stop(s.sides[index]), index, times[k]) for k in least]
+        found += [(depth[k] - s.sides[index] * q.contact.stop(s.sides[index]), index, times[k]) for k in least]
     _, index, near = min(found)
     step = (s.ends[s.rests.index(index)] - s.times[index]) / (WITHIN - 1)
     return parted(s, index, at_rest(orbit, near, step))
@@ -79,7 +79,7 @@ def in_two(s: Solution) -> Solution:
 
 def at_rest(orbit: PeriodicOrbit, near: float, beside: float) -> float:
     """When the gap is at rest, so near to a time. Raises ValueError where it is not."""
-    normal = orbit._solution.family.linear.normal
+    normal = orbit._solution.family.linear.contact.normal
     return brentq(lambda t: orbit.sample([t])[0, 1::2] @ normal, near - beside, near + beside, xtol=1e-15)
 
 

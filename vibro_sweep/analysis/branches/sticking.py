@@ -44,7 +44,7 @@ def sticking_onset(special: SpecialPoint) -> SpecialPoint | None:
         return None
     name = next(iter(special.parameters))
     solution, index = inserted(special.orbit._solution)
-    R = float(solution.family.linear.restitution(solution.sides[index : index + 1])[0])
+    R = float(solution.family.linear.contact.restitution(solution.sides[index : index + 1])[0])
     if not 0 < R < 1 or solution.is_free:
         return None
     found = [onset for guess in _guesses(solution, index) if (onset := _onset(guess, name)) is not None]
@@ -63,7 +63,7 @@ def _guesses(touching: Solution, index: int) -> list[Chatter]:
     At the end of the sequence the acceleration vanishes. The last impacts are unlike those of the onset: the second
     half of the sequence is left out.
     """
-    K, P, sigma, N = touching.K, touching.P, touching.sigma, len(touching.family.linear.normal)
+    K, P, sigma, N = touching.K, touching.P, touching.sigma, touching.family.linear.masses
     t = np.append(touching.times[index:], touching.times[:index] + P)
     D = np.append(touching.jumps[index:], sigma * touching.jumps[:index])
     sides = [*touching.sides[index:], *(sigma * side for side in touching.sides[:index])]

@@ -30,11 +30,11 @@ class TouchesAtOnce:
         q, t = touching.family.linear, touching.times
         self.moved, self.sides = moved, np.array(touching.sides, float)
         self.smooth = np.array([is_smooth(q, side) for side in touching.sides])
-        dampers = [q.c_high if side > 0 else q.c_low for side in touching.sides]
+        dampers = [q.contact.law(side)[1] for side in touching.sides]
         corners = np.array([has_corner(q, side) for side in touching.sides])
-        push = contact_coordinates(q).by_force[0] @ q.normal  # 1/m_e
+        push = contact_coordinates(q).by_force[0] @ q.contact.normal  # 1/m_e
         self.corners = np.where(corners, dampers, 0.0) * push
-        n, K = 2 * len(q.normal), touching.K
+        n, K = 2 * q.masses, touching.K
         lengths = np.array([t[k + 1] - t[k] if k + 1 < K else t[0] + touching.P - t[k] for k in range(K)])
         self.flights = np.empty((K, n, n))
         flight_matrices(flow(q), lengths, self.flights, new_workspace(n + 3))

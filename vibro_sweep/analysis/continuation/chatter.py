@@ -54,7 +54,7 @@ def with_impacts(curve: SolutionCurve, place: Place, K: int) -> tuple[SolutionCu
         curve, place = _resized(curve, place, curve.K + 1)
         place.phases[-1] = place.phases[0] + curve.omega(place) * time
         curve.run_task(FOLLOW, place)
-        one_plus_R = 1 + curve.family(place).linear.restitution(curve.problem.sides[-1:])[0]
+        one_plus_R = 1 + curve.family(place).linear.contact.restitution(curve.problem.sides[-1:])[0]
         place.jumps[-1] = -one_plus_R * curve.motion(place)[-1, 0] / curve.units.speed
     return (curve, curve.copied(place)) if curve.K == K else _resized(curve, place, K)
 

@@ -1,6 +1,7 @@
 """The oscillator as polynomials of its free numbers, two at most (engine/continuation/moving_flow.py)."""
 
 from functools import cache, lru_cache
+from operator import attrgetter
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -41,7 +42,7 @@ class Oscillators:
         checked_cells(family.linear, half_periods)
         self.family, self.names, self.half_periods, self.units = family, names, half_periods, units
         self.slopes = [family.derivative(name) for name in names]
-        still = not any(np.any(getattr(slope, field)) for slope in self.slopes for field in MOTION)
+        still = not any(np.any(values) for slope in self.slopes for values in attrgetter(*MOTION)(slope))
         self._still = sampled(family.linear, units) if still else None
         self._known: dict[tuple[float, ...], Family] = {}  # the last ones
 
@@ -56,7 +57,7 @@ class Oscillators:
     def values(self, p) -> np.ndarray:
         """`sampled` at the parameters p; the phase, which that does not need, is not looked for."""
         q = self.at(p).built
-        if np.any(q.is_compliant((-1, 1)) != self.family.linear.is_compliant((-1, 1))):
+        if np.any(q.contact.is_compliant((-1, 1)) != self.family.linear.contact.is_compliant((-1, 1))):
             raise ValueError("k_stop: a stop has lost its stiffness")
         if self._still is None:
             return sampled(q, self.units)
@@ -74,7 +75,7 @@ class Oscillators:
                 return np.where(np.isinf(values), 0.0, values)  # a stop that is not there
         except (ValueError, ZeroDivisionError, np.linalg.LinAlgError):
             q = self.family.linear
-            return np.full(moving_flow.count_of(len(q.normal), q.compliant), np.nan)
+            return np.full(moving_flow.count_of(q.masses, q.compliant), np.nan)
 
     def around(self, around, within) -> np.ndarray | None:
         """(1,) `plane_of` around these values, as far as `within`, or as polynomials hold; None: nowhere."""
@@ -102,7 +103,7 @@ class Oscillators:
             values = np.array(values)
             if not np.all(np.isfinite(values)):
                 return None
-            size = _sizes(values, 2 * len(self.family.linear.normal))
+            size = _sizes(values, 2 * self.family.linear.masses)
             seen = np.flatnonzero((np.abs(_to_chebyshev(most) @ values) > DECAYED * size).any(axis=1))
             degree = int(seen[-1]) if len(seen) else 0
             if degree <= most - 2:
@@ -124,7 +125,7 @@ class Oscillators:
 
     def _built(self, centre, reach, degrees, c, values) -> np.ndarray:
         q = self.at(centre).linear
-        n = 2 * len(q.normal)
+        n = 2 * q.masses
         result = np.zeros(1, moving_flow.plane_of(n // 2, q.compliant))
         r, at_centre = result[0], sampled(q, self.units)
         flat, size = values[..., : n * (n + 1)], _sizes(values.reshape(-1, values.shape[-1]), n)[: n * (n + 1)]
@@ -139,7 +140,7 @@ class Oscillators:
         r["centre"], r["reach"], r["degree"] = centre, reach, degrees
         r["fit"][: c.shape[0], : c.shape[1]] = c
         r["fit"][0, 0][np.isinf(at_centre)] = at_centre[np.isinf(at_centre)]
-        r["half_turns"], r["by_force"] = self.half_periods, q.by_force
+        r["half_turns"], r["by_force"] = self.half_periods, q.contact.by_force
         r["width"] = flow(q).width * self.units.rate
         r["middle_weights"], r["rest_weights"] = middle_weights(float(r["width"]))
         longest = np.pi * self.half_periods / values[..., -1].min()

@@ -44,7 +44,7 @@ class SolutionCurve:
         self.tau = float(q.tau)  # by which phases become times: those of the curve do not move with it
         self._taus = [(s.family.free[names[0]], self.tau)]
         self.oscillators = Oscillators(s.family, names, s.half_periods, self.units)
-        self.n = 2 * len(q.normal)
+        self.n = 2 * q.masses
         self._take_sides(s.sides)
         planes = self.oscillators.around(self.bounds.mean(axis=1), self.unit / 2) if len(names) > 1 else None
         self.planes = self._around([s.family.free[name] for name in names]) if planes is None else planes

@@ -31,6 +31,6 @@ class StartingOrbit:
 def keeps_symmetry(family: Family, name: str) -> bool:
     """Whether orbits with x(t + P) = -x(t) remain so along this parameter."""
     slope = family.derivative(name)
-    low = -slope.low, slope.R_low, slope.k_low, slope.c_low, slope.p_low
-    high = slope.high, slope.R_high, slope.k_high, slope.c_high, slope.p_high
+    one = slope.contact
+    low, high = ((side * one.stop(side), one.restitution(side), *one.law(side)) for side in (-1, 1))
     return low == high and not np.any(slope.constant)

@@ -75,7 +75,7 @@ def arrays_of(curve: BifurcationCurve) -> Arrays:
 
 def _grazing_clearance(q: Linear) -> float:
     """b at which the free motion touches both stops; NaN where there is none."""
-    response = gap_response(q) if q.low == -q.high and not np.any(q.constant) else None
+    response = gap_response(q) if q.contact.low == -q.contact.high and not np.any(q.constant) else None
     return np.nan if response is None else abs(response)
 
 

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from operator import attrgetter
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -23,7 +24,7 @@ from vibro_sweep.tables.coordinates import state
 if TYPE_CHECKING:
     import xarray
 
-FREE = ("M", "K", "C", "normal", "constant")  # fields of an oscillator on which its free flight depends
+free_numbers = attrgetter("M", "K", "C", "contact.normal", "constant")  # on which the free flight depends
 
 
 def dataset(curve: SolutionCurve, rows: Rows) -> "xarray.Dataset":
@@ -46,12 +47,12 @@ def dataset(curve: SolutionCurve, rows: Rows) -> "xarray.Dataset":
     for q, f, p, t, D, ends, motion, h in zip(
         oscillators, flows, rows.p, rows.t, rows.D, rows.ends, rows.motion, rows.state, strict=True
     ):
-        contacts = np.column_stack([q.stop(sides), 1 + q.restitution(sides)])[others]
+        contacts = np.column_stack([q.contact.stop(sides), 1 + q.contact.restitution(sides)])[others]
         P, u = forcing_period(q) / 2 * s.half_periods, np.concatenate([t[others], D[others]])
         shifts.append((curve.tau - q.tau) / q.omega)
         if kind == STICK:
-            multipliers.append(np.full(2 * len(q.normal), np.nan, complex))
-            states.append(np.full(2 * len(q.normal), np.nan))
+            multipliers.append(np.full(2 * q.masses, np.nan, complex))
+            states.append(np.full(2 * q.masses, np.nan))
             continue
         if s.rests:
             values = _with_contacts(curve, p, t + shifts[-1], D, ends + shifts[-1])
@@ -70,7 +71,7 @@ def dataset(curve: SolutionCurve, rows: Rows) -> "xarray.Dataset":
     variables = {
         names[0]: ("point", rows.p[:, 0]),
         names[1]: ("point", rows.p[:, 1]),
-        **{name: ("point", values) for name, values in zip(state(len(q.normal)), np.transpose(states), strict=True)},
+        **{name: ("point", values) for name, values in zip(state(q.masses), np.transpose(states), strict=True)},
         "multiplier_re": (("point", "multiplier"), values.real),
         "multiplier_im": (("point", "multiplier"), values.imag),
         "unstable": ("point", unstable),
@@ -107,7 +108,7 @@ def _with_contacts(curve: SolutionCurve, p, t, D, ends) -> tuple[np.ndarray, np.
 def _state(q: Linear, f: Flow, sigma: int, P: float, t: np.ndarray, D: np.ndarray, h: np.ndarray) -> np.ndarray:
     """(2N,) at t = 0, before an impact there: that at a multiple of P after the first impact."""
     later = math.ceil(t[0] / P) if len(t) else 0
-    workspace, N = new_workspace(len(f.B)), len(q.normal)
+    workspace, N = new_workspace(len(f.B)), q.masses
     free_part(f, h, t, D, P, later * P, workspace)
     y = (workspace.state[: 2 * N] + steady_motion(q, later * P)) * (1 if sigma == 1 or later % 2 == 0 else -1)
     return contact_coordinates(q).to_masses(y)
@@ -116,7 +117,8 @@ def _state(q: Linear, f: Flow, sigma: int, P: float, t: np.ndarray, D: np.ndarra
 def _flows(oscillators: list[Linear]) -> list[Flow]:
     """The flow of each point; one for all where only force and stops change along the curve."""
     first = oscillators[0]
-    if all(np.array_equal(getattr(q, name), getattr(first, name)) for q in oscillators for name in FREE):
+    own = free_numbers(first)
+    if all(np.array_equal(one, other) for q in oscillators for one, other in zip(free_numbers(q), own, strict=True)):
         return [flow(first)] * len(oscillators)
     return [flow(q) for q in oscillators]
 

@@ -45,7 +45,7 @@ def as_special(start: StartingOrbit, names, system, error: float = np.nan) -> Sp
     if start.type == "graze":
         (stop, impact), multipliers = stop_and_impact(s, start.index), bare(s, start.index).multipliers
     elif len(slow_impacts(s)):
-        multipliers = np.full(2 * len(s.family.linear.normal), np.nan, complex)
+        multipliers = np.full(2 * s.family.linear.masses, np.nan, complex)
     else:
         multipliers = s.multipliers
     orbit = orbit_of(system.replace(**parameters), s)

@@ -8,7 +8,7 @@ from vibro_sweep.engine.continuation.lasting import PER_TIME_CONSTANT
 from vibro_sweep.engine.continuation.lasting_map import MOST_HALVINGS
 from vibro_sweep.engine.continuation.moving_flow import NUMBERS
 from vibro_sweep.engine.impulses.flow import contact_coordinates
-from vibro_sweep.oscillator.linear import STEP, Linear, forcing_period
+from vibro_sweep.oscillator.linear import STEP, Linear, forcing_period, stepped
 
 
 class EventUnits(NamedTuple):
@@ -28,29 +28,30 @@ def numbers_of(q: Linear, units: EventUnits) -> list[float]:
     each, and omega."""
     length, rate = units
     laws = []
-    if np.real(q.k_low) > 0 or np.real(q.k_high) > 0:
-        push = contact_coordinates(q).by_force[0] @ q.normal  # 1/m_e
-        for k, c, p in ((q.k_low, q.c_low, q.p_low), (q.k_high, q.c_high, q.p_high)):
+    one, sides = q.contact, (-1, 1)
+    if any(np.real(one.law(side)[0]) > 0 for side in sides):
+        push = contact_coordinates(q).by_force[0] @ one.normal  # 1/m_e
+        for k, c, p in map(one.law, sides):
             laws += [k * push / rate**2, c * push / rate, p * push / (rate**2 * length)]
-    R_low, R_high = (0.0 if np.real(k) > 0 else R for k, R in ((q.k_low, q.R_low), (q.k_high, q.R_high)))
-    return [*laws, q.low / length, q.high / length, 1 + R_low, 1 + R_high, q.omega / rate]
+    R_low, R_high = (0.0 if np.real(k) > 0 else R for k, R in ((one.k_low, one.R_low), (one.k_high, one.R_high)))
+    return [*laws, one.low / length, one.high / length, 1 + R_low, 1 + R_high, q.omega / rate]
 
 
 def number_slopes(q: Linear, slope: Linear, units: EventUnits) -> np.ndarray:
     """Derivatives of `numbers_of` where q changes by `slope`, and these units stay."""
-    there = q._replace(**{name: 0.0 for name in ("low", "high") if np.isinf(getattr(q, name))})
-    step = Linear(*(value + 1j * STEP * np.asarray(change) for value, change in zip(there, slope, strict=True)))
-    return np.imag(numbers_of(step, units)) / STEP
+    there = q.with_contact(**{name: 0.0 for name in ("low", "high") if np.isinf(getattr(q.contact, name))})
+    return np.imag(numbers_of(stepped(there, slope), units)) / STEP
 
 
 def one_plus_R(q: Linear, sides) -> np.ndarray:
     """-D/v of events on these sides: 1 + R, and 1 of a contact, whose D stands for its speed as that of a rest does."""
-    return 1 + np.where(q.is_compliant(sides), 0.0, q.restitution(sides))
+    return 1 + np.where(q.contact.is_compliant(sides), 0.0, q.contact.restitution(sides))
 
 
 def compliant_stops(q: Linear) -> np.ndarray | None:
     """(2,) whether the left and the right stop are compliant; None where no event lasts: both are rigid, R > 0."""
-    return np.array([q.k_low > 0, q.k_high > 0]) if q.compliant or min(q.R_low, q.R_high) == 0 else None
+    lasting = q.compliant or min(q.contact.restitution((-1, 1))) == 0
+    return q.contact.is_compliant((-1, 1)) if lasting else None
 
 
 def presses_too_long(q: Linear) -> bool:
@@ -63,20 +64,20 @@ def presses_too_long(q: Linear) -> bool:
 def is_smooth(q: Linear, side: int) -> bool:
     """Whether a contact with this stop begins like the square root of what passes the stop: orbits go on through its
     graze, or turn back where it ends by force."""
-    return bool(q.is_compliant(side)) and (q.p_high if side > 0 else q.p_low) == 0
+    return bool(q.contact.is_compliant(side)) and q.contact.law(side)[2] == 0
 
 
 def has_corner(q: Linear, side: int) -> bool:
     """Whether multipliers jump at the graze of a contact with this stop, by its damper."""
-    return q.by_force and is_smooth(q, side) and (q.c_high if side > 0 else q.c_low) > 0
+    return q.contact.by_force and is_smooth(q, side) and q.contact.law(side)[1] > 0
 
 
 def preload(q: Linear, side: int) -> float:
     """The acceleration with which the preload of a compliant stop takes the gap back; 0 of other stops."""
-    force = (q.p_high if side > 0 else q.p_low) if q.is_compliant(side) else 0.0
-    return float(force * (contact_coordinates(q).by_force[0] @ q.normal))
+    force = q.contact.law(side)[2] if q.contact.is_compliant(side) else 0.0
+    return float(force * (contact_coordinates(q).by_force[0] @ q.contact.normal))
 
 
 def impulse_by_speed(q: Linear, side: int) -> float:
     """The impulse, as a change of the gap velocity, over the speed of a weak touch that does not begin smoothly."""
-    return 2.0 if q.is_compliant(side) else 1.0 + float(q.restitution(side))
+    return 2.0 if q.contact.is_compliant(side) else 1.0 + float(q.contact.restitution(side))

@@ -37,9 +37,8 @@ class _Contact:
             np.array([begin]),
             start[None].copy(),
         )
-        self.N = len(q.normal)
-        names = ("k_high", "c_high", "p_high", "high") if side > 0 else ("k_low", "c_low", "p_low", "low")
-        self.k, self.c, self.p, self.stop = (getattr(q, name) for name in names)
+        self.N = q.masses
+        (self.k, self.c, self.p), self.stop = q.contact.law(side), float(q.contact.stop(side))
 
     def at(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Depth, its rate, the force and its rate, so long after the touch."""

@@ -29,10 +29,10 @@ class EventEquations:
 
     def __init__(self, q: Linear, sigma: int, half_periods: int, sides, rests=()):
         """rests : indices of impacts after which the mass rests"""
-        self.q, self.K, self.n = q, len(sides), 2 * len(q.normal)
+        self.q, self.K, self.n = q, len(sides), 2 * q.masses
         planes = _tables(q, sigma, half_periods, bool(rests), q.compliant)
         self.planes = planes.copy()  # kernels write the contact's numbers into it
-        self.planes[0]["numbers"], self.planes[0]["by_force"] = _contact_of(q), q.by_force
+        self.planes[0]["numbers"], self.planes[0]["by_force"] = _contact_of(q), q.contact.by_force
         self.planes[0]["exact"][self.n * (self.n + 2) :] = numbers_of(q, EventUnits(1.0, q.omega))
         resting, compliant = np.zeros(self.K, bool), compliant_stops(q)
         resting[list(rests)] = True
@@ -109,7 +109,7 @@ def _no_path() -> path.Path:
 
 def _contact_of(q: Linear) -> list[float]:
     """`numbers` of a plane, omega in radians of the force."""
-    return [q.low, q.high, 1 + q.R_low, 1 + q.R_high, 1.0]
+    return [q.contact.low, q.contact.high, 1 + q.contact.R_low, 1 + q.contact.R_high, 1.0]
 
 
 @memoised(*MOTION)

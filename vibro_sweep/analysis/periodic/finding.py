@@ -63,7 +63,7 @@ def periodic_orbit(
     sides = None if itinerary is None else _checked_sides(family.linear, itinerary)
     rows = None if guess is None else _checked_guess(family.linear, guess, itinerary)
     if state is not None:
-        state = checked_state(state, len(family.linear.normal))
+        state = checked_state(state, family.linear.masses)
         if not (sides is None and rows is None):
             raise ArgumentError(not_allowed("state", state, "left out where an itinerary or a guess is given"))
     elif sides is None and rows is None:
@@ -92,7 +92,7 @@ def _checked_sides(q, itinerary) -> tuple[int, ...]:
     if not isinstance(itinerary, str) or set(itinerary) - set(SIDES):
         raise ArgumentError(not_allowed("itinerary", itinerary, "a word of R and L"))
     sides = tuple(SIDES[letter] for letter in itinerary)
-    if not np.all(np.isfinite(q.stop(sides))):
+    if not np.all(np.isfinite(q.contact.stop(sides))):
         raise ArgumentError(not_allowed("itinerary", itinerary, "a word of stops that the system has"))
     return sides
 
@@ -106,7 +106,7 @@ def _checked_guess(q, guess, itinerary):
     if any(b[0] <= a[0] for a, b in pairwise(rows)):
         raise ArgumentError(not_allowed("guess", guess, "(t, side, v) for each impact, in the order of their times"))
     sides = word([side for _, side, _ in rows])
-    if not np.all(np.isfinite(q.stop([int(side) for _, side, _ in rows]))):
+    if not np.all(np.isfinite(q.contact.stop([int(side) for _, side, _ in rows]))):
         raise ArgumentError(not_allowed("guess", guess, "(t, side, v) for each impact on a stop that the system has"))
     if itinerary is not None and (len(itinerary) != len(sides) or itinerary not in 2 * sides):  # any rotation of it
         raise ArgumentError(not_allowed("itinerary", itinerary, f"that of the guess, {sides!r}"))

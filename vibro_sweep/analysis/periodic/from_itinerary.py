@@ -62,7 +62,7 @@ def from_itinerary(system, family, sides, periods, which: int = 0) -> PeriodicOr
     if real:
         allowed = f"at most {len(real) - 1}: so many other orbits are found" if real[1:] else "0: no other is found"
         raise ArgumentError(not_allowed("which", which, allowed))
-    if np.any(family.linear.restitution(sides) == 0):
+    if np.any(family.linear.contact.restitution(sides) == 0):
         for start in kinds:
             for guess in evenly(start):
                 found = with_rests(guess)
@@ -89,11 +89,12 @@ def _attracting(system, family, sides, periods) -> PeriodicOrbit | None:
         return None
     q, letters = family.linear, word(sides)
     size = np.kron(np.abs(amplitudes(q)), [1.0, q.omega])  # of x1 v1 .. xN vN in the free motion
-    inside = ROUNDING * np.abs(q.normal @ size[::2])
-    rigid = [-np.inf if q.is_compliant(-1) else q.low + inside, np.inf if q.is_compliant(1) else q.high - inside]
+    one = q.contact
+    inside, normal = ROUNDING * np.abs(one.normal @ size[::2]), one.normal
+    rigid = [np.inf * side if one.is_compliant(side) else one.stop(side) - side * inside for side in (-1, 1)]
     for state in size * np.random.default_rng(0).uniform(-1, 1, (STARTS, len(size))):
-        gap = q.normal @ state[::2]
-        state[::2] += (np.clip(gap, *rigid) - gap) * q.normal / (q.normal @ q.normal)
+        gap = normal @ state[::2]
+        state[::2] += (np.clip(gap, *rigid) - gap) * normal / (normal @ normal)
         simulated = simulate(system, state, SETTLING)
         found = from_state(system, family, simulated.section[-1], periods) if str(simulated.status) == "ok" else None
         if found and found.ok and len(found.itinerary) == len(letters) and found.itinerary in 2 * letters:
@@ -116,18 +117,18 @@ def _passes_a_stop(s: Solution) -> bool:
     if lengths[k] < 2 * T:
         return False
     start, begin, f = s.states[k : k + 1].copy(), s.times[k : k + 1], flow(q)
-    start[0, len(q.normal)] += s.jumps[k]
+    start[0, q.masses] += s.jumps[k]
     moments, out = begin + lengths[k] / 2 + T * np.arange(MOMENTS) / MOMENTS, np.empty((MOMENTS, start.shape[1]))
     flights.sample_flights(f, start, begin, np.zeros(MOMENTS, int), moments, out, flights.new_workspace(start.shape[1]))
-    size = abs(steady_gap(q).swing) + np.abs(q.stop(s.sides)).max() + np.abs(s.jumps).max() / q.omega
-    return bool(max(out[:, 0].max() - q.high, q.low - out[:, 0].min()) > 1e-9 * size)
+    size = abs(steady_gap(q).swing) + np.abs(q.contact.stop(s.sides)).max() + np.abs(s.jumps).max() / q.omega
+    return bool(max(out[:, 0].max() - q.contact.high, q.contact.low - out[:, 0].min()) > 1e-9 * size)
 
 
 def _seeded(start: Solution) -> Iterator[Solution | None]:
     """Solutions from fixed seeds, different ones, those whose impulses push first; None after so many seeds."""
     e, K, q = EventEquations.of(start), start.K, start.family.linear
     rng, T, sides = np.random.default_rng(0), forcing_period(q), np.array(start.sides)
-    stops, pushed = np.abs(q.stop(start.sides)).max(), abs(push_of_free_mode(q)) * start.P / K
+    stops, pushed = np.abs(q.contact.stop(start.sides)).max(), abs(push_of_free_mode(q)) * start.P / K
     size = max(q.omega * abs(steady_gap(q).swing), q.omega * stops, pushed)
     t = np.sort(rng.uniform(0, start.P, (SEEDS, K)), axis=1)
     t += rng.uniform(0, start.P, (SEEDS, 1)) - t[:, :1]

@@ -85,7 +85,7 @@ def _corrected(system, guess: Solution) -> PeriodicOrbit:
     if len(guess.rests) < np.count_nonzero(guess.contacts) or not np.all(np.isfinite(guess.u)):
         return PeriodicOrbit(system, "not_converged")
     found = guess.corrected()
-    if found is None and guess.family.linear.by_force:
+    if found is None and guess.family.linear.contact.by_force:
         with suppress(np.linalg.LinAlgError):  # the guess has no motion
             if not guess.relaxes:
                 return PeriodicOrbit(system, "unrelaxed")
@@ -94,7 +94,7 @@ def _corrected(system, guess: Solution) -> PeriodicOrbit:
 
 def _from_rests(system, family, simulated, periods) -> PeriodicOrbit:
     """The orbit from a simulation over two periods, in which the mass rests after impacts with R = 0."""
-    impacts, P, R = simulated.impacts, periods * system.period, family.linear.restitution
+    impacts, P, R = simulated.impacts, periods * system.period, family.linear.contact.restitution
     if np.any(R(simulated.sticking["side"]) != 0) or str(simulated.status) != "ok" or not len(impacts):
         return PeriodicOrbit(system, "sticking")
     begin = impacts["t"][0]
@@ -111,7 +111,7 @@ def _from_rests(system, family, simulated, periods) -> PeriodicOrbit:
 
 def from_guess(system, family, rows, periods) -> PeriodicOrbit:
     sides = tuple(int(side) for _, side, _ in rows)
-    R = family.linear.restitution(sides)
+    R = family.linear.contact.restitution(sides)
     t, v = np.array([row[0] for row in rows]), np.array([row[2] for row in rows])
     start = with_contacts(family, Solution(family, 1, 2 * periods, sides, np.empty(0)), t, v)
     if sides and t[-1] >= t[0] + start.P:

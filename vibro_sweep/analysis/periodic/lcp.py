@@ -119,13 +119,13 @@ def born_at_grazing(system, periods: int = 6) -> list[Born]:
 def _graze(q: Linear, b: float) -> _Graze:
     s = steady_gap(q)
     amplitude = abs(s.swing)
-    right = b + s.mean + amplitude - q.high  # -inf without that stop
-    left = b + q.low - s.mean + amplitude
+    right = b + s.mean + amplitude - q.contact.high  # -inf without that stop
+    left = b + q.contact.low - s.mean + amplitude
     double = abs(right - left) <= 1e-12 * amplitude
     first = -(np.angle(s.swing) + q.tau) / q.omega
     side = 1 if right >= left or double else -1
     first += 0 if side > 0 else forcing_period(q) / 2
-    return _Graze(max(right, left), amplitude, first, side, 1 + double, double and q.R_low == q.R_high)
+    return _Graze(max(right, left), amplitude, first, side, 1 + double, double and q.contact.R_low == q.contact.R_high)
 
 
 def _of_period(system, family, graze: _Graze, n: int) -> list[Born]:
@@ -144,7 +144,7 @@ def _of_period(system, family, graze: _Graze, n: int) -> list[Born]:
 
 def _gamma(q: Linear, n: int, count: int) -> np.ndarray:
     """(count,) the gap's response at 0, P/count, 2 P/count, ... to a unit impulse repeated every P = n T."""
-    states, f, P = 2 * len(q.normal), flow(q), n * forcing_period(q)
+    states, f, P = 2 * q.masses, flow(q), n * forcing_period(q)
     E = np.empty((count, states, states))
     flights.flight_matrices(f, P / count * np.arange(1, count + 1), E, flights.new_workspace(states + 3))
     before = closing(q, 1, 2 * n)[:, :states] @ E[-1, :, states // 2]
@@ -202,7 +202,7 @@ def complementary(M: np.ndarray, sets: np.ndarray):
 def _confirmed(system, family, graze: _Graze, n: int, t, sides, d, side: int) -> Born:
     """The orbit at a small distance on its side, by Newton's method from what lowest order says."""
     P = n * forcing_period(family.linear)
-    R = family.linear.restitution(sides)
+    R = family.linear.contact.restitution(sides)
     orbit = PeriodicOrbit(system, "not_converged")
     for share in BESIDE:
         distance = share * graze.amplitude

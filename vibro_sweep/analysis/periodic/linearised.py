@@ -97,7 +97,7 @@ class Linearised:
         """The slope, by the number, of the distance of a watched turning point from its stop."""
         moved, side = self.tangent()[index], self.solution.sides[index]
         steady = (self.equations.planes[0]["Z_slopes"][0, 0] * np.exp(1j * self.phases[index])).real
-        return float(side * (self.slope.stop([side])[0] - moved[0] - steady))
+        return float(side * (self.slope.contact.stop([side])[0] - moved[0] - steady))
 
     def critical_direction(self, mu: int) -> np.ndarray:
         """(2K + rests,) what a multiplier mu = 1 or -1 moves: of times, jumps and ends of rests."""

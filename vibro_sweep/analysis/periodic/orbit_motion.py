@@ -31,7 +31,7 @@ class OrbitMotion:
 
     def _follow_events(self, watched: list[int]) -> None:
         x, steady = self.place.x, self.equations.steady(self.place.phases)[0, 0]
-        x[0, 0] = (0.0 if self.alone else self.q.stop(self.equations.problem.sides[:1])[0]) - steady
+        x[0, 0] = (0.0 if self.alone else self.q.contact.stop(self.equations.problem.sides[:1])[0]) - steady
         self.equations.problem.sides[watched] = 0.0
         self.equations.run_task(stepper.CLOSE)
 

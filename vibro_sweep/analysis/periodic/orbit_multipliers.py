@@ -40,4 +40,4 @@ def squared(values: np.ndarray) -> np.ndarray:
 def contacts_of(q: Linear, sides) -> np.ndarray:
     """(K, 2) stop and 1 + R."""
     sides = np.asarray(sides)
-    return np.column_stack([q.stop(sides), 1 + q.restitution(sides)])
+    return np.column_stack([q.contact.stop(sides), 1 + q.contact.restitution(sides)])

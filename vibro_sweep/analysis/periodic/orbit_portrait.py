@@ -16,7 +16,7 @@ def portrait(orbit: PeriodicOrbit) -> str:
         return ""
     q = family_of(orbit.system).linear
     gap, rate = _closed_path(orbit, q)
-    stops = [stop for stop in (q.low, q.high) if np.isfinite(stop)]
+    stops = [stop for stop in (q.contact.low, q.contact.high) if np.isfinite(stop)]
     x, y = _scaled(gap, [*gap, *stops], WIDTH), HEIGHT - _scaled(rate, rate, HEIGHT)
     walls = "".join(f"M{place} 0v{HEIGHT}" for place in _scaled(np.array(stops), [*gap, *stops], WIDTH))
     steps = zip(np.diff(x), np.diff(y), strict=True)
@@ -34,10 +34,10 @@ def _closed_path(orbit: PeriodicOrbit, q) -> tuple[np.ndarray, np.ndarray]:
     length = orbit.period * forcing_period(q)
     t, v = orbit.impacts["t"] % length, orbit.impacts["v1"]
     order = np.argsort(t)
-    t, after = t[order], (-q.restitution(orbit.impacts["side"]) * v)[order]
+    t, after = t[order], (-q.contact.restitution(orbit.impacts["side"]) * v)[order]
     times = np.unique(np.concatenate([np.linspace(0, length, min(SAMPLES * orbit.period, MOST) + 1), t]))
     states = orbit.sample(times)
-    gap, rate = states[:, ::2] @ q.normal, states[:, 1::2] @ q.normal
+    gap, rate = states[:, ::2] @ q.contact.normal, states[:, 1::2] @ q.contact.normal
     where = np.searchsorted(times, t) + 1
     return np.insert(gap, where, gap[where - 1]), np.insert(rate, where, after)
 

@@ -130,7 +130,7 @@ class PeriodicOrbit(Result):
         _, began, _, ends = s.events
         begins, sides = times[(which - first) % s.K], np.array(s.sides)[which]
         states = s.states[which].copy()
-        states[:, 0] = q.stop(sides)
+        states[:, 0] = q.contact.stop(sides)
         return contacts_between(q, begins, (ends - began)[which], sides, states)
 
     @property
@@ -147,12 +147,12 @@ class PeriodicOrbit(Result):
     def impacts(self) -> np.ndarray:
         """Structured, fields t, side, v1 (before), x2, v2; x and xdot (N,) of all masses where there is no System. On
         rigid stops alone."""
-        N = 2 if self._solution is None else len(self._solution.family.linear.normal)
+        N = 2 if self._solution is None else self._solution.family.linear.masses
         kind = IMPACT if isinstance(self.system, System) else impact_of(N)
         if self._solution is None or not self._solution.K:
             return np.empty(0, kind)
         t, sides, _, states = self._whole
-        struck = ~self._solution.family.linear.is_compliant(sides)
+        struck = ~self._solution.family.linear.contact.is_compliant(sides)
         t, sides, states = t[struck], sides[struck], states[struck]
         x = self._masses(states)
         result = np.empty(len(t), kind)
@@ -220,17 +220,18 @@ class PeriodicOrbit(Result):
             chosen = np.flatnonzero(held[which] == side)
             if len(chosen):
                 part = np.empty((len(chosen), starts.shape[1]))
-                f = flow(q) if side == 0 else contact_flow(q, side) if q.is_compliant(side) else constrained_flow(q)
+                pressed = q.contact.is_compliant(side)
+                f = flow(q) if side == 0 else contact_flow(q, side) if pressed else constrained_flow(q)
                 flights.sample_flights(f, starts, begins, which[chosen], wrapped[chosen], part, workspace)
                 out[chosen] = part
-        return self._masses(out[:, : 2 * len(q.normal)])
+        return self._masses(out[:, : 2 * q.masses])
 
     @cached_property
     def _pieces(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Begins of flights and of events that last, the states there in contact coordinates, and of the latter the
         side; 0 of flights."""
         s = self._solution
-        N, m = len(s.family.linear.normal), flow(s.family.linear).B.shape[0]
+        N, m = s.family.linear.masses, flow(s.family.linear).B.shape[0]
         if s.rests:
             whole = s.whole()
             begins, starts, held = whole.resting.pieces()

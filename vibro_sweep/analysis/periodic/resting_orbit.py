@@ -32,7 +32,7 @@ class RestingOrbit(OrbitMotion):
         x, e, n = self.place.x, self.events, self.n
         x[:, :n] = 0.0
         self._follow()
-        for _ in range(CLOSINGS if self.q.by_force else 1):
+        for _ in range(CLOSINGS if self.q.contact.by_force else 1):
             through = np.eye(n)
             for k in range(len(x)):
                 through = e["E"][k, 0, :, :n] @ (e["carry"][k, :, :n] @ through if k in self.rests else through)
@@ -102,7 +102,7 @@ class RestingOrbit(OrbitMotion):
         side; 0 of flights."""
         N, rests, ends = self.n // 2, self.equations.problem.rests, self._ends
         struck, after = self.states, self.equations.whole(self.events["after"][:, : self.n], ends)
-        on, stops = self.equations.problem.sides, self.q.stop(self.equations.problem.sides)
+        on, stops = self.equations.problem.sides, self.q.contact.stop(self.equations.problem.sides)
         struck[rests, 0], after[rests, 0] = stops[rests], (stops + on * self.events["depth"])[rests]
         for states in (struck, after):
             states[rests & ~self.pressed, N] = 0.0

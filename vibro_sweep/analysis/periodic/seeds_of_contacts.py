@@ -22,33 +22,35 @@ STIFFER = 1e4, 1e2, 1.0  # times the stiffness, at the same z
 
 def of_free_mass(q: Linear, side: int) -> tuple[float, float]:
     """Restitution and duration of a contact of a free mass with a compliant stop."""
-    push = contact_coordinates(q).by_force[0] @ q.normal  # 1/m_e
-    k, c = (q.k_high, q.c_high) if side > 0 else (q.k_low, q.c_low)
+    push = contact_coordinates(q).by_force[0] @ q.contact.normal  # 1/m_e
+    k, c, _ = q.contact.law(side)
     rate = math.sqrt(k * push)
     z = min(c * push / (2 * rate), MOST_DAMPED)
-    root, turned = math.sqrt(1 - z * z), math.pi - (2 * math.asin(z) if q.by_force else 0.0)
+    root, turned = math.sqrt(1 - z * z), math.pi - (2 * math.asin(z) if q.contact.by_force else 0.0)
     return math.exp(-turned * z / root), turned / (rate * root)
 
 
 def rigid(family: Family) -> Family:
     """The same machine with rigid stops, of the restitution that a free mass sees."""
     q = family.linear
-    R = [of_free_mass(q, side)[0] if q.is_compliant(side) else R for side, R in ((-1, q.R_low), (1, q.R_high))]
-    none = {f"{name}_{side}": 0.0 for name in "kcp" for side in ("low", "high")}
-    hard = q._replace(R_low=R[0], R_high=R[1], **none)
+    one, none = q.contact, {f"{name}_{side}": 0.0 for name in "kcp" for side in ("low", "high")}
+    R = [of_free_mass(q, side)[0] if one.is_compliant(side) else float(one.restitution(side)) for side in (-1, 1)]
+    hard = q.with_contact(R_low=R[0], R_high=R[1], **none)
     return Family(lambda: hard, {})
 
 
 def stiffer(q: Linear, times: float) -> Linear:
     """With stops that are stiffer, at the same damping ratio."""
-    root = math.sqrt(times)
-    return q._replace(k_low=q.k_low * times, k_high=q.k_high * times, c_low=q.c_low * root, c_high=q.c_high * root)
+    one, root = q.contact, math.sqrt(times)
+    return q.with_contact(
+        k_low=one.k_low * times, k_high=one.k_high * times, c_low=one.c_low * root, c_high=one.c_high * root,
+    )  # fmt: skip
 
 
 def with_contacts(family: Family, solution: Solution, t, speeds) -> Solution:
     """A guess with impacts or contacts at these times, with these gap velocities before them."""
     q, sides, there = family.linear, np.array(solution.sides, int), replace(solution, family=family)
-    lengths = {side: of_free_mass(q, side)[1] if q.is_compliant(side) else np.nan for side in (1, -1)}
+    lengths = {side: of_free_mass(q, side)[1] if q.contact.is_compliant(side) else np.nan for side in (1, -1)}
     ends = t + np.array([lengths[side] for side in sides.tolist()])
     return there.with_events(sides, t, -one_plus_R(q, sides) * speeds, ends)
 

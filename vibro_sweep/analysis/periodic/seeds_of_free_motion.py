@@ -26,7 +26,8 @@ def touches_of_free_motion(free: Solution) -> list[tuple[float, int]]:
     if has_free_gap(q):
         return []
     mean, swing = steady_gap(q)
-    sides = [side for side in (1, -1) if abs(abs(swing) - side * (float(q.stop(side)) - mean)) <= TOUCHING * abs(swing)]
+    reach = {side: side * (float(q.contact.stop(side)) - mean) for side in (1, -1)}
+    sides = [side for side in (1, -1) if abs(abs(swing) - reach[side]) <= TOUCHING * abs(swing)]
     return sorted((_time(q, swing, side, 0.0) % free.P, side) for side in sides)
 
 
@@ -44,7 +45,8 @@ def touching_at_once(free: Solution) -> tuple[Solution, int] | None:
     if free.K or free.sigma == -1 or len(touches := touches_of_free_motion(free)) < 2:
         return None
     q = free.family.linear
-    return with_touches(free, touches), min(range(2), key=lambda i: (q.is_compliant(touches[i][1]), touches[i][1]))
+    order = [(q.contact.is_compliant(side), side) for _, side in touches]
+    return with_touches(free, touches), min(range(2), key=order.__getitem__)
 
 
 def from_free_motion(start: Solution) -> Solution | None:
@@ -53,13 +55,13 @@ def from_free_motion(start: Solution) -> Solution | None:
     if has_free_gap(q):
         return None
     mean, swing = steady_gap(q)
-    passed = {side: abs(swing) - side * (float(q.stop(side)) - mean) for side in _stops(start)}
+    passed = {side: abs(swing) - side * (float(q.contact.stop(side)) - mean) for side in _stops(start)}
     if min(passed.values()) <= SHORTEST * abs(swing):
         return None
     one = None
     for share in DEPTHS:
         high, low = ((1 - share) * passed.get(side, 0.0) for side in (1, -1))
-        there = q._replace(high=q.high + high, low=q.low - low)
+        there = q.with_contact(high=q.contact.high + high, low=q.contact.low - low)
         family = start.family if share == 1 else Family(lambda there=there: there, {})
         guess = replace(one, family=family) if one else _touching(replace(start, family=family))
         one = guess and guess.corrected()
@@ -72,7 +74,8 @@ def _touching(start: Solution) -> Solution | None:
     """The free motion with a contact, or an impact, wherever it passes a stop."""
     q, K = start.family.linear, start.K
     mean, swing = steady_gap(q)
-    angle = {side: math.acos(max(-1.0, side * (float(q.stop(side)) - mean) / abs(swing))) for side in _stops(start)}
+    reach = {side: side * (float(q.contact.stop(side)) - mean) / abs(swing) for side in _stops(start)}
+    angle = {side: math.acos(max(-1.0, share)) for side, share in reach.items()}
     turns = [(side, turn) for side in angle for turn in range(start.half_periods + 2)]
     events = sorted((_time(q, swing, side, angle[side]) + turn * 2 * math.pi / q.omega, side) for side, turn in turns)
     for first in range(len(events) - K):

@@ -33,7 +33,7 @@ def evenly(start: Solution):
     K, P, q = len(start.sides), start.P, start.family.linear
     for first in np.arange(PHASES) / PHASES:
         times = (first + np.arange(K) / K) * P
-        jumps = -np.array(start.sides) * q.omega * np.abs(q.stop(start.sides))
+        jumps = -np.array(start.sides) * q.omega * np.abs(q.contact.stop(start.sides))
         u = np.concatenate([times, jumps])
         yield Solution(start.family, start.sigma, start.half_periods, start.sides, u)
 
@@ -42,8 +42,8 @@ def _patterns(solution: Solution) -> list[tuple[int, ...]]:
     """The impacts after which it may rest: those that would press into the stop, all with R = 0, the last ones in a
     row."""
     q, sides = solution.family.linear, np.array(solution.sides, float)
-    dead = q.restitution(sides) == 0
-    N = len(q.normal)
+    dead = q.contact.restitution(sides) == 0
+    N = q.masses
     after = solution.motion[:, 1] + solution.jumps * flow(q).B[N, N]
     last = np.append(sides[1:], solution.sigma * sides[0]) != sides
     chosen = dead & (sides * after > 0), dead, dead & last

@@ -81,7 +81,7 @@ class Solution:
     @cached_property
     def contacts(self) -> np.ndarray:
         """(K,) whether events are contacts with compliant stops."""
-        return self.family.linear.is_compliant(np.array(self.sides, int))
+        return self.family.linear.contact.is_compliant(np.array(self.sides, int))
 
     @property
     def events(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
@@ -111,7 +111,7 @@ class Solution:
         """(K, 3) gap velocity, acceleration and jerk before each impact; the velocity as the jump says."""
         q = self.family.linear
         B = flow(q).B
-        N, states = len(q.normal), self.states[: self.K]
+        N, states = q.masses, self.states[: self.K]
         rates, v = states @ B.T, -self.jumps / one_plus_R(q, self.sides)
         return np.column_stack([np.where(v != 0, v, states[:, N]), rates[:, N], rates @ B[N]])
 
@@ -197,7 +197,7 @@ class Solution:
     def size_of_gap(self) -> float:
         """A scale of the gap: of the stops that are hit, the steady motion, and what impulses do in 1/omega."""
         q = self.family.linear
-        stops, moved = np.abs(q.stop(np.array(self.sides, int))), np.abs(self.jumps) / q.omega
+        stops, moved = np.abs(q.contact.stop(np.array(self.sides, int))), np.abs(self.jumps) / q.omega
         return max(float(stops.max(initial=0.0)), abs(steady_gap(q).swing), float(moved.max(initial=0.0)))
 
     @cached_property
@@ -220,7 +220,7 @@ class Solution:
 
     def with_touch(self, index: int, time: float, side: int) -> "Solution":
         """The same motion with one impact more, which has no speed."""
-        end = time if self.family.linear.is_compliant(side) else np.nan  # a contact ends as it begins
+        end = time if self.family.linear.contact.is_compliant(side) else np.nan  # a contact ends as it begins
         new = zip(self.events, (side, time, 0.0, end), strict=True)
         return self.with_events(*(np.insert(values, index, value) for values, value in new))
 

@@ -17,12 +17,12 @@ class SteadyGap(NamedTuple):
 def steady_gap(q: Linear) -> SteadyGap:
     """Raises ResonanceError where an undamped mode is driven at its own frequency."""
     try:
-        swing = complex(q.normal @ amplitudes(q))
+        swing = complex(q.contact.normal @ amplitudes(q))
     except np.linalg.LinAlgError:
         swing = np.inf
     if not np.isfinite(swing):
         raise ResonanceError("the force drives an undamped mode at its own frequency")
-    return SteadyGap(0.0 if has_free_gap(q) else float(q.normal @ _static(q, q.constant)), swing)
+    return SteadyGap(0.0 if has_free_gap(q) else float(q.contact.normal @ _static(q, q.constant)), swing)
 
 
 def _static(q: Linear, force: np.ndarray) -> np.ndarray:
@@ -39,5 +39,5 @@ def push_of_free_mode(q: Linear) -> float:
     free = int(has_free_gap(q))
     if np.any(np.abs(q.constant @ shapes[:, free:]) > 1e-13 * np.abs(q.constant).max(initial=0)):
         raise ResonanceError("a constant force acts on a free mode that the contact does not hold")
-    mobility = contact_coordinates(q).by_force[0] @ q.normal
+    mobility = contact_coordinates(q).by_force[0] @ q.contact.normal
     return float(shapes[:, 0] @ q.constant * mobility / seen[0]) if free else 0.0

@@ -41,8 +41,8 @@ class DiscontinuityMap:
         q, self._engine = self._system.linear, Engine(self._system)
         self.graze = grazing_state(q)
         if at is not None:  # in the direction of an impulse
-            self.graze[0::2] += (at - q.normal @ self.graze[0::2]) * push_of(q)
-        self._at = float(q.normal @ self.graze[0::2])
+            self.graze[0::2] += (at - q.contact.normal @ self.graze[0::2]) * push_of(q)
+        self._at = float(q.contact.normal @ self.graze[0::2])
 
     def __repr__(self) -> str:
         return f"<DiscontinuityMap of order {self._order}, expanded at b = {self._at:.10g}; {self._system}>"
@@ -70,7 +70,7 @@ class DiscontinuityMap:
 def _check_symmetric(system: Oscillator) -> None:
     """Check what the mapping needs: the two halves of a period are mirror images, and a steady motion."""
     q = system.linear
-    if getattr(system, "offset", 0.0) != 0 or q.R_low != q.R_high or np.any(q.constant):
+    if getattr(system, "offset", 0.0) != 0 or q.contact.R_low != q.contact.R_high or np.any(q.constant):
         allowed = "one with equal stops about 0 and without a constant force, for the discontinuity mapping"
         raise ArgumentError(not_allowed("system", system, allowed))
     if not gap_response(q):

@@ -40,12 +40,12 @@ def motion_of(orbit: Any, q: Linear, begin: float, end: float, repeats: bool = F
     times = np.unique(np.concatenate([even, struck, inside[(inside >= begin) & (inside <= end)]]))
     motion = sampled(orbit, q, times)
     at, sides, before = np.searchsorted(times, struck), impacts["side"], impacts["v1"]
-    after, jump = -q.restitution(sides) * before, np.full(len(at), np.nan)
+    after, jump = -q.contact.restitution(sides) * before, np.full(len(at), np.nan)
     rows = {name: (values[at], jump, values[at]) for name, values in motion.states.items()} | {"t": 3 * (struck,)}
     gap, rate = motion.names
     if gap != "x1":  # all velocities jump: after it they are those of the next sample
         rows |= {name: (values[at], jump, jump) for name, values in motion.states.items() if name.startswith("v")}
-    rows |= {gap: (q.stop(sides), jump, q.stop(sides)), rate: (before, jump, after)}
+    rows |= {gap: (q.contact.stop(sides), jump, q.contact.stop(sides)), rate: (before, jump, after)}
     kept = np.isin(times, struck, invert=True)
     states = with_jumps(times[kept], {name: values[kept] for name, values in motion.states.items()}, rows)
     return replace(motion, t=states.pop("t"), states=states, impacts=np.stack([struck, sides, before, after], axis=1))
@@ -55,12 +55,11 @@ def sampled(orbit: Any, q: Linear, times: np.ndarray) -> Motion:
     """The motion at these times, without its impacts."""
     found = orbit.sample(times)
     states = dict(zip(state(found.shape[1] // 2), found.T, strict=True))
-    if not (q.normal[0] == 1 and not q.normal[1:].any()):
-        states |= {"gap": found[:, 0::2] @ q.normal, "gap_velocity": found[:, 1::2] @ q.normal}
-    stops = {side: stop for side, stop in ((1, q.high), (-1, q.low)) if np.isfinite(stop)}
-    laws = {1: (q.k_high, q.c_high, q.p_high), -1: (q.k_low, q.c_low, q.p_low)}
-    laws = {side: laws[side] for side in stops if q.is_compliant(side)}
-    return Motion(times, 1.0, states, np.zeros((0, 4)), stops, laws, bool(q.by_force))
+    if not (q.contact.normal[0] == 1 and not q.contact.normal[1:].any()):
+        states |= {"gap": found[:, 0::2] @ q.contact.normal, "gap_velocity": found[:, 1::2] @ q.contact.normal}
+    stops = {side: stop for side, stop in ((1, q.contact.high), (-1, q.contact.low)) if np.isfinite(stop)}
+    laws = {side: q.contact.law(side) for side in stops if q.contact.is_compliant(side)}
+    return Motion(times, 1.0, states, np.zeros((0, 4)), stops, laws, bool(q.contact.by_force))
 
 
 def orbit_figure(

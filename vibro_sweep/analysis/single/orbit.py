@@ -197,7 +197,7 @@ class Orbit(Result):
             records.times[:, 0], records.times[:, 1] = cell[chosen], offset[chosen]
             if n < first:
                 engine.put(self._start, start_cell, start_offset)
-            elif self.system.linear.by_force:  # stops that relax at a section are not part of its state
+            elif self.system.linear.contact.by_force:  # stops that relax at a section are not part of its state
                 engine.put(self._start, start_cell, start_offset)
                 if periods := n - first + int(start_cell > 0 or start_offset > 0):
                     engine.carry(orbits.new_records(1, masses=engine.kind.masses), np.empty((periods, engine.states)))

@@ -18,8 +18,7 @@ import numpy as np
 
 from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.engine.points.exact import accelerations, as_fractions, inverse, product
-from vibro_sweep.oscillator.contact_element import NAMES, Contact
-from vibro_sweep.oscillator.linear import contact
+from vibro_sweep.oscillator.linear import LinearContact
 
 RIGID, COMPLIANT, BY_FORCE, RUBS = range(4)  # BY_FORCE: compliant, with a damper, and left where its force is zero
 MOST = 24  # elements, whose modes together make a number of 64 bits
@@ -67,15 +66,14 @@ class Machine(NamedTuple):
     back: np.ndarray  # (N, N)
 
 
-def stops_of(contacts: Sequence[Contact]) -> list[Stop]:
+def stops_of(contacts: Sequence[LinearContact]) -> list[Stop]:
     """The stops of a list of contacts."""
     found = []
     for number, one in enumerate(contacts, 1):
-        q = contact(**{name: getattr(one, name) for name in NAMES if name != "contact_normal"})
-        for side, end in ((1, "high"), (-1, "low")):
-            if math.isfinite(q[end]):
-                rest = [q[f"{name}_{end}"] for name in "Rkcp"]
-                found.append(Stop(number, one.contact_normal, side, q[end], *rest, q["by_force"]))
+        for side in (1, -1):
+            place, R = float(one.stop(side)), float(one.restitution(side))
+            if math.isfinite(place):
+                found.append(Stop(number, one.normal, side, place, R, *one.law(side), one.by_force))
     return found
 
 

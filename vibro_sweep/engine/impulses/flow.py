@@ -22,7 +22,7 @@ from vibro_sweep.engine.impulses.free_modes import (
 )
 from vibro_sweep.engine.impulses.taylor_orders import ORDER, exponential, power, taylor_rows
 from vibro_sweep.engine.points.contact import coordinates, push_of
-from vibro_sweep.oscillator.linear import MATRICES, MOTION, STEP, Linear, amplitudes, forcing_period, memoised
+from vibro_sweep.oscillator.linear import MATRICES, MOTION, STEP, Linear, amplitudes, forcing_period, memoised, stepped
 
 DOUBLINGS = 18
 
@@ -50,11 +50,11 @@ class Coordinates(NamedTuple):
         return result
 
 
-@memoised("M", "normal")
+@memoised("M", "contact.normal")
 def contact_coordinates(q: Linear) -> Coordinates:
     """The coordinates of the masses where n = e_1 and M is diagonal. Which mass is left out depends on n alone: what
     follows from the coordinates stays smooth along branches."""
-    P, back = coordinates(q.normal, int(np.argmax(np.abs(q.normal))))
+    P, back = coordinates(q.contact.normal, int(np.argmax(np.abs(q.contact.normal))))
     push = push_of(q, P)
     W, inverse = (np.eye(len(P), dtype=push.dtype) for _ in range(2))
     W[1:, 0], inverse[1:, 0] = push[1:], 0.0 - push[1:]
@@ -82,7 +82,7 @@ class Flow(NamedTuple):
 
 def rates(q: Linear) -> np.ndarray:
     """B of zeta' = B zeta, (m, m)."""
-    N = len(q.normal)
+    N = q.masses
     to = contact_coordinates(q)
     n = 2 * N
     A = free_rates(q)
@@ -95,13 +95,12 @@ def rates(q: Linear) -> np.ndarray:
 
 def rate_slopes(q: Linear, slope: Linear) -> np.ndarray:
     """Derivative of B, (m, m), where q changes by `slope`, by a complex step."""
-    step = Linear(*(value + 1j * STEP * np.asarray(change) for value, change in zip(q, slope, strict=True)))
-    return rates(step).imag / STEP
+    return rates(stepped(q, slope)).imag / STEP
 
 
 def free_rates(q: Linear) -> np.ndarray:
     """The part of it that knows no force, (n, n)."""
-    N = len(q.normal)
+    N = q.masses
     to = contact_coordinates(q)
     A = np.zeros((2 * N, 2 * N), to.U.dtype)
     A[:N, N:] = to.P @ to.U_back
@@ -119,16 +118,15 @@ def flow(q: Linear) -> Flow:
 def constrained_flow(q: Linear) -> Flow:
     """Tables of the motion while the gap stays as it is."""
     B = rates(q)
-    B[0], B[len(q.normal)] = 0.0, 0.0
+    B[0], B[q.masses] = 0.0, 0.0
     return _flow(q, B)
 
 
 def contact_flow(q: Linear, side: int) -> Flow:
     """Tables of the motion in contact with a compliant stop (+1 high, -1 low)."""
-    N, B = len(q.normal), rates(q)
-    laws = (q.k_high, q.c_high, q.p_high, q.high) if side > 0 else (q.k_low, q.c_low, q.p_low, q.low)
-    k, c, p, stop = laws
-    push = contact_coordinates(q).by_force[0] @ q.normal  # 1/m_e
+    N, B = q.masses, rates(q)
+    (k, c, p), stop = q.contact.law(side), q.contact.stop(side)
+    push = contact_coordinates(q).by_force[0] @ q.contact.normal  # 1/m_e
     B[N, 0] -= k * push
     B[N, N] -= c * push
     B[N, -1] -= (side * p - k * stop) * push
@@ -168,7 +166,7 @@ def closing(q: Linear, sigma: int, half_periods: int) -> np.ndarray:
 
     The gap is used only where the contact sees a free mode. Raises ResonanceError.
     """
-    N = len(q.normal)
+    N = q.masses
     n = 2 * N
     A = extended(free_rates(q))
     cells = cells_needed(q)

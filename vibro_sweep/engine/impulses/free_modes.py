@@ -31,11 +31,11 @@ def free_modes(q: Linear) -> tuple[np.ndarray, np.ndarray]:
     _, sizes, rows = np.linalg.svd(q.K / np.outer(scale, scale))
     shapes = (rows[sizes <= 1e-13 * max(sizes[0], q.omega**2)] / scale).T
     if shapes.shape[1] > 1:
-        seen = q.normal @ shapes
+        seen = q.contact.normal @ shapes
         rotation = np.linalg.qr(np.column_stack([seen, np.eye(len(seen))]))[0]
         shapes = shapes @ rotation
-    seen = q.normal @ shapes
-    return shapes, np.where(np.abs(seen) > 1e-13 * np.abs(q.normal) @ np.abs(shapes), seen, 0.0)
+    seen = q.contact.normal @ shapes
+    return shapes, np.where(np.abs(seen) > 1e-13 * np.abs(q.contact.normal) @ np.abs(shapes), seen, 0.0)
 
 
 def turns(q: Linear) -> bool:

@@ -3,6 +3,8 @@
 Of those that differ in their stops alone one is worked out.
 """
 
+from operator import attrgetter
+
 import numpy as np
 
 from vibro_sweep.engine.points.confinement import confinement_of
@@ -25,9 +27,11 @@ from vibro_sweep.engine.points.plain_points import APART, UNEVEN, machine_of, mo
 from vibro_sweep.engine.records import Kind, point_of
 from vibro_sweep.engine.tables import cells
 from vibro_sweep.engine.tables.flight import WIDTH
-from vibro_sweep.oscillator.linear import MOTION, STOP_LAW, Linear, grazing_state, selected
+from vibro_sweep.oscillator.linear import MOTION, Linear, grazing_state, mapped, selected
 from vibro_sweep.oscillator.stacks import different, dot, finite, only, unrepeated
 from vibro_sweep.oscillator.steady import gap_responses, steady_amplitudes
+
+motion_numbers = attrgetter(*MOTION)  # of an oscillator
 
 
 def kind_of(q: Linear) -> Kind:
@@ -35,7 +39,7 @@ def kind_of(q: Linear) -> Kind:
 
     With one mass a constant force takes no time, also where it is 0: kernels with room for it serve both.
     """
-    masses = q.normal.shape[-1]
+    masses = q.masses
     constant = masses == 1 or bool(np.any(q.constant) or np.any(origin_of(q)))
     return Kind(masses, constant, bool(np.any(q.compliant)))
 
@@ -43,15 +47,15 @@ def kind_of(q: Linear) -> Kind:
 def any_points(q: Linear, kind: Kind, frames: bool = True) -> np.ndarray:
     """Points of a stack of oscillators, tau resolved, of its shape. frames: whether tangent vectors are wanted."""
     shape, origin = q.omega.shape, origin_of(q)
-    once = unrepeated([*(getattr(q, name) for name in MOTION), origin], len(shape))
-    few = _flat(Linear(*(one[once] for one in q)))
-    numbers = [getattr(few, name) for name in MOTION]
-    rows = np.concatenate([_row(one) for one in (*numbers, origin[once].reshape(few.normal.shape))], -1)
+    once = unrepeated([*motion_numbers(q), origin], len(shape))
+    few = _flat(mapped(lambda name, x: x[once], q))
+    numbers = motion_numbers(few)
+    rows = np.concatenate([_row(one) for one in (*numbers, origin[once].reshape(few.contact.normal.shape))], -1)
     unlike, place = different(rows)
     place = np.broadcast_to(place.reshape(q.omega[once].shape), shape)
     result = _repeated(_points(few, rows[unlike], unlike, kind, frames), place)
-    low, high = (distance(q, origin, gap) for gap in (q.low, q.high))
-    result["stops"] = np.stack([low, high, q.R_low, q.R_high], -1)
+    low, high = (distance(q, origin, gap) for gap in (q.contact.low, q.contact.high))
+    result["stops"] = np.stack([low, high, q.contact.R_low, q.contact.R_high], -1)
     if kind.compliant:
         _set_contact(result, q)
     return result
@@ -65,7 +69,7 @@ def _repeated(points: np.ndarray, place: np.ndarray) -> np.ndarray:
 def _flat(q: Linear) -> Linear:
     """The same stack with one dimension."""
     lead = q.omega.ndim
-    return Linear(*(one.reshape(-1, *one.shape[lead:]) for one in q))
+    return mapped(lambda name, x: x.reshape(-1, *x.shape[lead:]), q)
 
 
 def _row(values: np.ndarray) -> np.ndarray:
@@ -74,11 +78,11 @@ def _row(values: np.ndarray) -> np.ndarray:
 
 def _set_contact(points: np.ndarray, q: Linear) -> None:
     """The compliant stops of points, over m_e = 1/(n M^-1 n), and the fastest rate in contact with each."""
-    mass = 1 / dot(q.normal, by_mass(q.M, q.normal[..., None])[..., 0])
-    points["contact_mass"], points["release"] = mass, q.by_force
-    for j, name in enumerate(STOP_LAW):
-        for n, place in enumerate(("low", "high")):
-            points["contact_law"][..., n, j] = getattr(q, f"{name}_{place}") / mass
+    mass = 1 / dot(q.contact.normal, by_mass(q.M, q.contact.normal[..., None])[..., 0])
+    points["contact_mass"], points["release"] = mass, q.contact.by_force
+    for n, side in enumerate((-1, 1)):
+        for j, number in enumerate(q.contact.law(side)):
+            points["contact_law"][..., n, j] = number / mass
     for n in range(2):
         stiffness, damping = points["stiffness"].copy(), points["damping"].copy()
         stiffness[..., 0] += points["push"] * points["contact_law"][..., n, 0, None]
@@ -92,12 +96,12 @@ def grazing_points(q: Linear, expand_at: float | None) -> np.ndarray:
     expand_at : the gap there, in place of the exact one
     """
     response = gap_responses(q, steady_amplitudes(q))
-    result = np.full((*response.shape, 2 * q.normal.shape[-1]), np.nan)
+    result = np.full((*response.shape, 2 * q.masses), np.nan)
     for place in np.ndindex(response.shape):  # () where it is one oscillator
         if np.isnan(response[place]) or response[place] == 0:
             continue
         one = selected(q, place)
-        state = np.kron(coordinates(one.normal, least_restrained(one))[0], np.eye(2)) @ grazing_state(one)
+        state = np.kron(coordinates(one.contact.normal, least_restrained(one))[0], np.eye(2)) @ grazing_state(one)
         state[0] = state[0] if expand_at is None else expand_at
         result[place] = state
     return result
@@ -133,7 +137,7 @@ def _other_points(q: Linear, kind: Kind, frames: bool) -> np.ndarray:
         points[name] = getattr(contact, name)
     points["divergence"] = -np.trace(contact.damping, axis1=-2, axis2=-1)
     # without forces many move alike: those that differ in omega alone
-    unlike, of = different(np.concatenate([_row(one) for one in (q.M, q.K, q.C, q.normal, contact.P)], -1))
+    unlike, of = different(np.concatenate([_row(one) for one in (q.M, q.K, q.C, q.contact.normal, contact.P)], -1))
     points["rate"] = fastest_rate(contact.stiffness[unlike], contact.damping[unlike])[of]
     n = kind.masses
     held, damped = contact.constrained[unlike, 1:, 1:n], contact.constrained[unlike, 1:, n + 1 : 2 * n]
@@ -161,7 +165,7 @@ def _other_points(q: Linear, kind: Kind, frames: bool) -> np.ndarray:
 
 def _set_apart(point: np.void, q: Linear, contact: ContactCoordinates) -> None:
     """The motion of an oscillator whose rates lie apart, in twice the digits."""
-    n = len(q.normal)
+    n = q.masses
     rounded, point["low"] = exact_motion(q, contact)
     point["stiffness"], point["damping"] = -rounded[:, :n], -rounded[:, n : 2 * n]
     point["force"] = rounded[:, 2 * n :]

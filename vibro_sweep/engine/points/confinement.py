@@ -23,21 +23,21 @@ class Confinement(NamedTuple):
 
 def confinement_of(q: Linear, contact: ContactCoordinates) -> Confinement:
     """Of each oscillator of a stack."""
-    n = q.normal.shape[-1]
+    n = q.masses
     stiffness = np.linalg.eigvalsh(q.K)
     turning = steady_amplitudes(q) * np.exp(1j * np.asarray(q.tau))[..., None]
-    swing = modulus(dot(q.normal + 0j, turning))
+    swing = modulus(dot(q.contact.normal + 0j, turning))
     there = (stiffness[..., 0] > SINGULAR * stiffness[..., -1]) & np.isfinite(swing)
     K = only(there, q.K)
     rest = solved(K, rest_force(q, contact.origin))  # as seen from x0
     steady, form = np.empty((*there.shape, 2 * n)), np.zeros((*there.shape, 2 * n, 2 * n))
     steady[..., 0::2] = times(contact.P, turning.real + rest)
     steady[..., 1::2] = times(contact.P + 0j, 1j * np.asarray(q.omega)[..., None] * turning).real
-    compliance = dot(q.normal, solved(K, q.normal))[..., None, None]
+    compliance = dot(q.contact.normal, solved(K, q.contact.normal))[..., None, None]
     form[..., 0::2, 0::2] = compliance * transposed(contact.back) @ q.K @ contact.back
     form[..., 1::2, 1::2] = compliance * transposed(contact.back) @ q.M @ contact.back
     one, many = there[..., None], there[..., None, None]
     return Confinement(
-        np.where(one, steady, 0.0), np.where(there, dot(q.normal, rest), 0.0), np.where(there, swing, np.inf),
+        np.where(one, steady, 0.0), np.where(there, dot(q.contact.normal, rest), 0.0), np.where(there, swing, np.inf),
         np.where(many, form, 0.0),
     )  # fmt: skip

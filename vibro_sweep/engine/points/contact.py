@@ -53,8 +53,8 @@ class ContactCoordinates(NamedTuple):
 
 def contact_coordinates(q: Linear) -> ContactCoordinates:
     """The oscillators in contact coordinates."""
-    n, origin = q.normal.shape[-1], origin_of(q)
-    P, back = coordinates(q.normal, least_restrained(q))
+    n, origin = q.masses, origin_of(q)
+    P, back = coordinates(q.contact.normal, least_restrained(q))
     push = push_of(q, P)
     forces = np.stack([q.sine, q.cosine, rest_force(q, origin)], -1)
     constrained, others = np.zeros((*P.shape[:-1], 2 * n + 3)), transposed(back[..., 1:])
@@ -68,7 +68,7 @@ def contact_coordinates(q: Linear) -> ContactCoordinates:
 
 def is_own(q: Linear) -> np.ndarray:
     """Whether these are the masses' own coordinates, of which an impulse moves the first alone, (...)."""
-    first = (q.normal == np.eye(q.normal.shape[-1])[0]).all(-1)
+    first = (q.contact.normal == np.eye(q.masses)[0]).all(-1)
     return first & is_diagonal(q.M) & ~origin_of(q).any(-1)
 
 
@@ -91,8 +91,8 @@ def least_restrained(q: Linear) -> np.ndarray:
     K, C, M = (np.abs(diagonal(one)) for one in (q.K, q.C, q.M))
     omega = np.asarray(q.omega)[..., None]
     with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
-        force = (K + omega * C + omega * omega * M) / q.normal / q.normal
-    return np.where((q.normal != 0) & ~np.isnan(force), force, np.inf).argmin(-1)
+        force = (K + omega * C + omega * omega * M) / q.contact.normal / q.contact.normal
+    return np.where((q.contact.normal != 0) & ~np.isnan(force), force, np.inf).argmin(-1)
 
 
 def coordinates(along: np.ndarray, spare: np.ndarray | int) -> tuple[np.ndarray, np.ndarray]:
@@ -111,8 +111,8 @@ def coordinates(along: np.ndarray, spare: np.ndarray | int) -> tuple[np.ndarray,
 
 def push_of(q: Linear, P: np.ndarray) -> np.ndarray:
     """p (..., N): what an impulse that changes the velocity of the gap by 1 does to q'."""
-    push = by_mass(q.M, q.normal[..., None])[..., 0]
-    push = times(P, push) / dot(q.normal, push)[..., None]
+    push = by_mass(q.M, q.contact.normal[..., None])[..., 0]
+    push = times(P, push) / dot(q.contact.normal, push)[..., None]
     push[..., 0] = 1.0
     return push
 
@@ -120,10 +120,11 @@ def push_of(q: Linear, P: np.ndarray) -> np.ndarray:
 def origin_of(q: Linear) -> np.ndarray:
     """x0 (..., N): at rest with the gap in the middle of the stops, as nearly as rounding lets it be; 0 if that lies
     between."""
-    far = is_far(q.middle, np.minimum(np.abs(q.middle - q.low), np.abs(q.high - q.middle)))
+    one = q.contact
+    far = is_far(one.middle, np.minimum(np.abs(one.middle - one.low), np.abs(one.high - one.middle)))
     if not far.any():
-        return np.broadcast_to(0.0, q.normal.shape)
-    result = np.zeros(q.normal.shape)
+        return np.broadcast_to(0.0, q.contact.normal.shape)
+    result = np.zeros(q.contact.normal.shape)
     result[far] = _held_in_the_middle(selected(q, far))
     return result
 
@@ -133,9 +134,9 @@ def _held_in_the_middle(q: Linear) -> np.ndarray:
     omega, ones = q.omega[..., None], np.ones((*q.omega.shape, 1))
     size = np.maximum(np.abs(diagonal(q.K)), omega * omega * diagonal(q.M))
     scale = 1 / np.sqrt(np.append(size, ones, -1))
-    scale[..., -1] = 1 / np.maximum(np.abs(q.normal * scale[..., :-1]).max(-1), 1e-300)
-    scaled = bordered(q.K, q.normal) * (scale[..., :, None] * scale[..., None, :])
-    found = least_squares(scaled, np.append(q.constant, q.middle[..., None], -1) * scale)
+    scale[..., -1] = 1 / np.maximum(np.abs(q.contact.normal * scale[..., :-1]).max(-1), 1e-300)
+    scaled = bordered(q.K, q.contact.normal) * (scale[..., :, None] * scale[..., None, :])
+    found = least_squares(scaled, np.append(q.constant, q.contact.middle[..., None], -1) * scale)
     return (found * scale)[..., :-1]
 
 
@@ -157,7 +158,7 @@ def distance(q: Linear, origin: np.ndarray, gap: np.ndarray) -> np.ndarray:
     """`gap` (...) as seen from x0, rounded once."""
     result, moved = np.array(gap), origin.any(-1)
     for place in map(tuple, np.argwhere(moved & np.isfinite(gap)) if moved.any() else ()):
-        result[place] = exact_sum([gap[place], *(-q.normal[place])], [1.0, *origin[place]])
+        result[place] = exact_sum([gap[place], *(-q.contact.normal[place])], [1.0, *origin[place]])
     return result
 
 
@@ -175,7 +176,7 @@ def natural_coordinates(q: Linear, contact: ContactCoordinates) -> Natural:
         np.where(many, by_mass(q.M, matrix), of_masses @ matrix @ transposed(of_masses)) for matrix in (q.K, q.C)
     )
     return Natural(
-        np.where(one, diagonal(q.M), 1.0), stiffness, damping, times(of_masses, q.normal),
+        np.where(one, diagonal(q.M), 1.0), stiffness, damping, times(of_masses, q.contact.normal),
         contact.P @ transposed(of_masses), of_masses,
     )  # fmt: skip
 

@@ -15,9 +15,9 @@ from vibro_sweep.oscillator.linear import Linear
 
 def exact_motion(q: Linear, contact: ContactCoordinates) -> tuple[np.ndarray, np.ndarray]:
     """(N, 2 N + 3) q'' as a function of (q, q', sin, cos, 1): rounded, and what that leaves."""
-    n, spare = len(q.normal), least_restrained(q)
+    n, spare = q.masses, least_restrained(q)
     units = [[Fraction(int(i == j)) for j in range(n)] for i in range(n) if i != spare]
-    P = [as_fractions(q.normal), *units]
+    P = [as_fractions(q.contact.normal), *units]
     K, constant, origin = as_fractions(q.K), as_fractions(q.constant), as_fractions(contact.origin)
     still = [f - sum(a * x for a, x in zip(row, origin, strict=True)) for row, f in zip(K, constant, strict=True)]
     forces = [*zip(as_fractions(q.sine), as_fractions(q.cosine), still, strict=True)]

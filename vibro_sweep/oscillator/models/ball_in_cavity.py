@@ -18,13 +18,12 @@ def ball_in_cavity(*, mass_ratio, zeta, F, omega, tau, **stops) -> Linear:
         M=matrix([[1, 0], [0, mass_ratio]]),
         K=np.diag([1.0, 0.0]),
         C=2 * np.asarray(zeta)[..., None, None] * np.diag([1.0, 0.0]),
-        normal=np.array([-1.0, 1.0]),
         constant=np.zeros(2),
         sine=vector([F, 0]),
         cosine=np.zeros(2),
         omega=omega,
         tau=None if isinstance(tau, str) else tau,
-        **contact(**stops),
+        contacts=[contact(np.array([-1.0, 1.0]), **stops)],
     )
 
 

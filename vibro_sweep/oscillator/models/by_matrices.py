@@ -31,13 +31,12 @@ def linear(
         M=M,
         K=K,
         C=damping(M, K, C, modal_damping, rayleigh),
-        normal=np.array(contact_normal, float),
         constant=vector(constant),
         sine=power * vector(force),
         cosine=power * vector(force_cos),
         omega=omega,
         tau=None if isinstance(tau, str) else tau,
-        **contact(**stops),
+        contacts=[contact(np.array(contact_normal, float), **stops)],
     )
 
 

@@ -20,13 +20,12 @@ def chain(*, m, k, c, force, constant, stop_at, omega, tau, stop_between=None, *
         M=masses[..., None] * np.eye(n),
         K=between_walls(k),
         C=between_walls(c),
-        normal=normal,
         constant=vector(constant),
         sine=vector(force),
         cosine=np.zeros(n),
         omega=omega,
         tau=None if isinstance(tau, str) else tau,
-        **contact(**stops),
+        contacts=[contact(normal, **stops)],
     )
 
 

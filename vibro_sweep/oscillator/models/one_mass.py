@@ -21,13 +21,12 @@ def one_mass(*, k, zeta, F, constant, base, omega, tau, m=1.0, **stops) -> Linea
         M=matrix([[m]]),
         K=matrix([[k]]),
         C=matrix([[2 * zeta]]),
-        normal=np.ones(1),
         constant=vector([constant]),
         sine=vector([sine]),
         cosine=cosine,
         omega=omega,
         tau=None if isinstance(tau, str) else tau,
-        **contact(**stops),
+        contacts=[contact(np.ones(1), **stops)],
     )
 
 

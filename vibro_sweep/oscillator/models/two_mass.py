@@ -43,13 +43,12 @@ def two_mass(*, mu_m, mu_k, zeta, f2, omega, tau, mu_c=None, **stops) -> Linear:
         M=matrix([[1, 0], [0, mu_m]]),
         K=matrix([[1, -1], [-1, 1 + mu_k]]),
         C=2 * np.asarray(zeta)[..., None, None] * matrix([[1, -1], [-1, 1 + (mu_k if mu_c is None else mu_c)]]),
-        normal=np.array([1.0, 0.0]),
         constant=np.zeros(2),
         sine=vector([1 - f2, f2]),
         cosine=np.zeros(2),
         omega=omega,
         tau=None if isinstance(tau, str) else tau,
-        **contact(**stops),
+        contacts=[contact(np.array([1.0, 0.0]), **stops)],
     )
 
 
