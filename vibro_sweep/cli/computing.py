@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
+from vibro_sweep.engine import simd
 from vibro_sweep.tables.units import Display
 
 from . import interrupt
@@ -73,26 +74,32 @@ class Computation:
         from vibro_sweep.driver.progress import progress_bar
         from vibro_sweep.files.file_errors import StoreError
 
-        if self.plot:
-            threading.Thread(target=_import_drawing).start()
-        else:
-            all_is_imported()
         workers_of_a_cluster = executor_of(self.scheduler)
         with input_errors(StoreError, *errors), interrupt.tidied_up():
             to_continue = self.advice("--resume")
             interrupt.advise(to_continue)
             try:
+                if self.plot:
+                    threading.Thread(target=_import_drawing).start()
+                else:
+                    all_is_imported()
                 bar = progress_bar(self.quiet)
                 with messages(self.quiet), workers_of_a_cluster as executor, bar as progress:
+                    if executor is not None:
+                        simd.FREE.set()  # others compile and compute
                     yield executor, progress
             except RunError as error:
                 if error.internal:
                     raise
                 raise InputError(f"{error}. Nothing that was computed is lost; {to_continue}") from None
+            finally:
+                simd.FREE.set()
 
 
 def _import_drawing() -> None:
-    """Import what draws while kernels are compiled, or run: LLVM and kernels leave the interpreter free."""
+    """Import what draws while LLVM optimises kernels, or these run: both leave the interpreter free, and numba, which
+    takes as long, does not."""
+    simd.FREE.wait()
     with suppress(Exception):  # the import by the thread that draws says what is wrong
         from vibro_sweep.plotting import plot  # noqa: F401
     all_is_imported()

@@ -8,7 +8,6 @@ import math
 
 from vibro_sweep.engine.orbit_block import run_points
 from vibro_sweep.engine.points.coupled_points import set_coupled_point
-from vibro_sweep.engine.points.plain_coordinates import inverse_of_m_e
 from vibro_sweep.engine.points.plain_modes import PLAIN, UNKNOWN, set_modes
 from vibro_sweep.engine.points.plain_points import set_plain_point
 from vibro_sweep.engine.points.refined_equations import refine_equations
@@ -74,7 +73,7 @@ def set_law(laws, release, i, q, p, modes):
     Where no motion is stiffer than k, nor damped more than c, no root of s^2 + c s + k is beyond max(sqrt k, c).
     """
     if laws is not None:
-        compliance, stiffest, strongest = inverse_of_m_e(q, modes), 0.0, 0.0
+        compliance, stiffest, strongest = modes.along[0], 0.0, 0.0
         for j in range(len(q.M)):
             stiffest, strongest = max(stiffest, modes.square[j]), max(strongest, modes.damping[j])
         p.contact_mass, p.release = 1.0 / compliance, release

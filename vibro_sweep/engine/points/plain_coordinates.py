@@ -8,7 +8,10 @@ from vibro_sweep.engine.simd.jit import jit
 
 @jit
 def set_coordinates(q, p, w):
-    """P and its inverse: the gap, and the masses but the one that is held least; M^-1 n, and the push of an impulse."""
+    """P and its inverse: the gap, and the masses but the one that is held least; n M^-1 n, and the push of an impulse.
+
+    Returns whether coordinates are those of the masses, of which the gap is the first and moves alone in an impulse.
+    """
     n, spare, least = len(q.M), 0, np.inf
     for i in range(n):
         w.mobility[i] = q.normal[i]
@@ -18,8 +21,9 @@ def set_coordinates(q, p, w):
             if held < least:
                 spare, least = i, held
     solve(w.mass, n, w.mobility)
-    along = inverse_of_m_e(q, w)
+    w.along[0] = 0.0
     for i in range(n):
+        w.along[0] += q.normal[i] * w.mobility[i]
         for j in range(n):
             p.P[i, j] = p.back[i, j] = 0.0
     row = 1
@@ -28,23 +32,16 @@ def set_coordinates(q, p, w):
         if j != spare:
             p.P[row, j] = p.back[j, row] = 1.0
             p.back[spare, row] = 0.0 - q.normal[j] / q.normal[spare]
-            p.push[row] = w.mobility[j] / along
+            p.push[row] = w.mobility[j] / w.along[0]
             row += 1
     p.back[spare, 0], p.push[0] = 1.0 / q.normal[spare], 1.0
-    p.turned = False
+    p.turned, own = False, True
     for i in range(n):
         p.origin[i] = 0.0
         for j in range(n):
             p.turned = p.turned or p.P[i, j] != (1.0 if i == j else 0.0)
-
-
-@jit
-def inverse_of_m_e(q, w):
-    """n M^-1 n."""
-    total = 0.0
-    for i in range(len(q.M)):
-        total += q.normal[i] * w.mobility[i]
-    return total
+            own = own and (i == j or q.M[i, j] == 0.0)
+    return own and not p.turned
 
 
 @jit

@@ -4,14 +4,13 @@ import math
 
 from vibro_sweep.engine.points.frame import LEAST_SCALE, SLOWEST
 from vibro_sweep.engine.points.invariant_planes import UNOBSERVABLE
-from vibro_sweep.engine.points.plain_coordinates import inverse_of_m_e
 from vibro_sweep.engine.simd.jit import jit
 
 
 @jit
 def set_frame(q, p, w):
     """The frame of tangent vectors (frame.py): each mode is a plane, those that the contact does not see come first."""
-    n, along, first = len(q.M), math.sqrt(inverse_of_m_e(q, w)), 0
+    n, along, first = len(q.M), math.sqrt(w.along[0]), 0
     for seen in range(2):
         for j in range(n):
             share = 0.0

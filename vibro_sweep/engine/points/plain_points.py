@@ -39,7 +39,8 @@ def modes_of(masses: int) -> np.dtype:
     n = masses
     fields = [
         ("mass", (n, n)),  # L D L^T, as of symmetric.py
-        ("mobility", (n,)),  # M^-1 n
+        ("mobility", (n,)),  # M^-1 n, and
+        ("along", (1,)),  # n M^-1 n
         ("K", (n, n)),  # in the metric of the masses, as C
         ("C", (n, n)),
         ("K_terms", (n, n)),  # moduli of what their numbers are sums of
@@ -77,8 +78,8 @@ def set_plain_points(machines, points, known, modes, frames):
 @jit
 def set_plain_point(q, p, w, frames):
     """Fill a point whose modes are known. Returns whether no mode is in resonance or far slower than the force."""
-    set_coordinates(q, p, w)
-    if not set_rate(q, p, w):
+    own = set_coordinates(q, p, w)
+    if not set_rate(q, p, w, own):
         return False
     set_equations(q, p, w)
     if not set_constrained(q, p, w) or not set_steady(q, p, w):
@@ -89,8 +90,9 @@ def set_plain_point(q, p, w, frames):
 
 
 @jit
-def set_rate(q, p, w):
-    """The rates of a point, and whether they lie apart. Returns whether all that springs hold is fast enough."""
+def set_rate(q, p, w, own):
+    """The rates of a point, and whether they lie apart; own: as of `set_coordinates`. Returns whether all that springs
+    hold is fast enough."""
     omega, fastest, slowest, held, damping = q.omega, 0.0, np.inf, np.inf, 0.0  # slowest of all, of those that are held
     for j in range(len(w.square)):
         fastest, slowest = max(fastest, rate_of(w.square[j], w.damping[j])), min(slowest, w.square[j])
@@ -99,18 +101,8 @@ def set_rate(q, p, w):
     # what holds a mass takes stiffness and damping of all motion that is left from between those of the modes
     p.constrained_rate = max(fastest, rate_of(slowest, damping))
     p.rounding = 0.0
-    own = not p.turned and is_diagonal(q.M)
     p.apart = fastest > APART * omega and not (own and slowest >= UNEVEN * fastest * fastest)
     return held > SLOWEST_SQUARE * omega * omega
-
-
-@jit
-def is_diagonal(matrix):
-    for i in range(len(matrix)):
-        for j in range(len(matrix)):
-            if i != j and matrix[i, j] != 0.0:
-                return False
-    return True
 
 
 @jit

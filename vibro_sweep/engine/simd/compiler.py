@@ -15,6 +15,7 @@ from numba.core.compiler import Compiler, Flags
 
 from vibro_sweep.engine import simd
 from vibro_sweep.engine.halting import heard
+from vibro_sweep.engine.simd import kernel_cache
 
 NEEDED = {JITCodeLibrary: "_optimize_functions", CPUCodegen: "_module_pass_manager", Flags(): "_values"}
 if not all(hasattr(where, name) for where, name in NEEDED.items()):
@@ -111,6 +112,8 @@ class _Whole(JITCodeLibrary):
 
     def _optimize(self):
         """Once, and without LLVM's vectorisers: kernels are vectors already."""
+        if self.name in kernel_cache.PURPOSES:
+            simd.FREE.set()
         options = {"opt": self.level, "loop_vectorize": False, "slp_vectorize": False}
         passes, builder = self._codegen._module_pass_manager(**options)
         passes.run(self._final_module, builder)

@@ -15,6 +15,8 @@ from pathlib import Path
 
 from numba.core import caching, config
 
+from vibro_sweep.engine import simd
+
 try:
     import fcntl
 except ImportError:  # Windows
@@ -136,6 +138,8 @@ class _Cache(caching.FunctionCache):
             if found is not None:
                 self._unlock()
             self._began = time.perf_counter()
+        if found is not None and self._py_func.__name__ in PURPOSES:
+            simd.FREE.set()
         return found
 
     def _kept(self, sig, target_context):
