@@ -221,6 +221,7 @@ def test_numbers_of_a_list_that_is_not_given():
     [
         (oscillator("linear", constant=[0, 0], offset=0), [0, 0]),
         (oscillator("linear", constant=[0, 0], offset=5.0), None),
+        (vs.Oscillator.named("one_mass", k=1e9, zeta=0.01, F=1, omega=3e4, R=0.8, b=1, offset=3), [2.0]),
         *slow_cases(
             (oscillator("chain"), [0, 0, 0]),
             (oscillator("chain", offset=5.0, constant=[0.3, 0, -0.2]), None),

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from vibro_sweep.driver.compute import BlockError, InternalError, RunError
+from vibro_sweep.engine import simd
 from vibro_sweep.files.pieces import Pieces
 
 ATTEMPTS = 3  # at a job whose worker dies: it may be the job that kills them
@@ -117,6 +118,7 @@ def workers_of(workers: int | None, executor: Executor | None) -> Iterator[Execu
         return
     if getattr(current_process(), "_inheriting", False):  # a worker that runs the script again, to import it
         os._exit(1)
+    simd.FREE.set()  # its processes compile and compute
     pool = ProcessPoolExecutor(workers, get_context("spawn"), _begin)
     try:
         yield pool

@@ -362,8 +362,12 @@ def rest_state(q: Linear) -> np.ndarray:
     result, held = np.zeros(q.contact.normal.shape), gap != 0.0
     if held.any():
         q = selected(q, held)
-        forces = np.append(q.constant, gap[held][..., None], -1)
-        result[held] = least_squares(bordered(q.K, q.contact.normal), forces)[..., :-1]
+        size = np.abs(q.K).max((-2, -1))[..., None]
+        scale = np.exp2(
+            np.round(np.log2(np.where(size > 0, size, 1.0)))
+        )  # else the gap is rounding beside stiff springs
+        forces = np.append(q.constant, scale * gap[held][..., None], -1)
+        result[held] = least_squares(bordered(q.K, scale * q.contact.normal), forces)[..., :-1]
     return result
 
 

@@ -96,6 +96,7 @@ def _announce(kernel: str, where: str) -> None:
         count = f", {_needed.index(kernel) + 1} of {len(_needed)} that this needs" if is_one_of_several else ""
         _log.info("compiling for %s: about %d s of processor time%s", purpose, seconds, count)
     if slower:
+        simd.FREE.set()  # by numba's own compiler, which does not say when LLVM works
         _once(logging.INFO, "slower", slower)
 
 

@@ -6,6 +6,7 @@ import { restState, steadyGap } from "./steady.js";
 
 const SET_UP = 0, DIAGRAM = 1, TRAJECTORY = 2;
 const ROUND = 64; // sizes are multiples of this
+const FAR = 1000; // times their distance: stops that lie so far on one side of 0
 const NOT_SET_UP = 100; // status of what this page cannot compute
 const ROOM = { hits: 4096, samples: 2401, periods: 60, kept: 2400 }; // of the motion of an orbit
 const READ = { i1: "getInt8", i4: "getInt32", i8: "getBigInt64", f8: "getFloat64" };
@@ -32,8 +33,9 @@ function setUp(kernel, each, plan) {
   kernel.call();
   const known = new Uint8Array(kernel.memory.buffer, kernel.place.known.at, m).slice();
   const { at } = kernel.place.points, { size, cells: [cells] } = layout.point;
-  machines.forEach((numbers, i) => { // its phase and rest are known, too
-    if (!(follows[i] && steady[i] === undefined) && restState(numbers)) return;
+  machines.forEach((numbers, i) => { // its phase and rest are known, too, and 0 is near enough to count from
+    const [low, high] = numbers.slice(STOPS), far = Math.max(low, -high) > FAR * (high - low);
+    if (!far && !(follows[i] && steady[i] === undefined) && restState(numbers)) return;
     kernel.view.setBigInt64(at + i * size + cells, 0n, true);
     known[i] = 0;
   });

@@ -258,8 +258,8 @@ class Diagram {
       if (gap >= low && gap <= high) return state;
     }
     // the masses lie around the middle of the stops, their gap does not: it is moved there
-    const bottom = Math.max(low, high - 2 * b), top = Math.min(high, low + 2 * b), size = normal.reduce((sum, n) => sum + n * n, 0);
-    const by = ((bottom < top ? bottom + draw() * (top - bottom) : middle) - gap) / size;
+    const bottom = high === Infinity ? low : Math.max(low, high - 2 * b), top = low === -Infinity ? high : Math.min(high, low + 2 * b);
+    const by = (bottom + draw() * (top - bottom) - gap) / normal.reduce((sum, n) => sum + n * n, 0);
     return state.map((x, j) => (j % 2 ? x : x + by * normal[j / 2]));
   }
 
