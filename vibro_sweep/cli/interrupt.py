@@ -15,7 +15,7 @@ from collections.abc import Iterator
 
 from .console import INTERRUPTED, print_error
 
-TIDYING = 5.0  # seconds after which it is given up
+TIDYING = 10.0  # seconds after which it is given up; LLVM may be in one call for half as long
 
 
 class _Handler:
