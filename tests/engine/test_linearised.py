@@ -10,7 +10,7 @@ from support.oscillators import CAVITY, CHAIN, ONE_MASS, PAPER
 
 import vibro_sweep as vs
 from vibro_sweep.analysis.periodic.linearised import Linearised
-from vibro_sweep.oscillator.linear import family_of
+from vibro_sweep.oscillator.family import family_of
 
 ORBITS = {
     "paper": (family_of(PAPER), "LR", 1),

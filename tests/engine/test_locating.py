@@ -9,7 +9,7 @@ from vibro_sweep.analysis.continuation.first_point import first_place
 from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve
 from vibro_sweep.analysis.continuation.starting_orbit import KINDS
 from vibro_sweep.analysis.curves.curve_start import start_at
-from vibro_sweep.oscillator.linear import family_of
+from vibro_sweep.oscillator.family import family_of
 from vibro_sweep.types import Family
 
 ORBITS = [

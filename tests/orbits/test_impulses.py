@@ -11,7 +11,7 @@ from vibro_sweep.analysis.periodic.event_equations import EventEquations
 from vibro_sweep.analysis.periodic.orbit_multipliers import contacts_of, multipliers_of
 from vibro_sweep.engine.impulses.flow import flow
 from vibro_sweep.engine.impulses.free_modes import MOST_CELLS, ResonanceError, TooStiffError
-from vibro_sweep.oscillator.linear import family_of
+from vibro_sweep.oscillator.family import family_of
 
 PAPER_FAMILY = family_of(PAPER)
 

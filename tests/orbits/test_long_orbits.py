@@ -14,7 +14,7 @@ from vibro_sweep.analysis.periodic.linearised import Linearised
 from vibro_sweep.analysis.windows.job import Job, window_of
 from vibro_sweep.engine.continuation.workspace import TEST
 from vibro_sweep.engine.impulses.flow import rate_slopes, rates
-from vibro_sweep.oscillator.linear import family_of
+from vibro_sweep.oscillator.family import family_of
 from vibro_sweep.tables.bifurcations import TYPES
 
 DAMPER = vs.Oscillator.named("ball_in_cavity", mass_ratio=0.27, zeta=0.116, F=0.99, omega=0.65, R=0.9, b=1.3)

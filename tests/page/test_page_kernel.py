@@ -13,7 +13,7 @@ from support.page_memory import Memory, Module, Native
 
 import vibro_sweep as vs
 from vibro_sweep.engine.points.any_points import kind_of
-from vibro_sweep.engine.records import Kind
+from vibro_sweep.engine.records import Kind, result_of
 from vibro_sweep.oscillator.linear import MOTION, stacked
 from vibro_sweep.oscillator.own_time import in_own_time, rate_of
 from vibro_sweep.standalone import kernel_module
@@ -177,15 +177,19 @@ def test_the_module_has_the_numbers_of_a_sweep(system, low, high):
     kind = kind._replace(constant=kind.constant or system.model.name == "chain")
     values, systems = swept(system, low, high)
     found = block(Module(module_of(kind)), kind, systems, np.zeros(2 * kind.masses))
-    data = vs.sweep(
-        system, {"b": values}, transient=TRANSIENT, record=RECORD, observe=["section", "lyapunov"], workers=1,
-    )  # fmt: skip
+    observed = ["section", "lyapunov", "impacts"] + ["contacts"] * kind.compliant
+    data = vs.sweep(system, {"b": values}, transient=TRANSIENT, record=RECORD, observe=observed, workers=1)
     fields, size = found.layout["result"], found.layout["result"]["size"]
     results = found.array("results", np.uint8).reshape(COLUMNS, size)
     period = results[:, fields["period"][0] :][:, :4].copy().view("i4")[:, 0]
     status = results[:, fields["status"][0]].view("i1")
     periodic = (data.period.values > 0) & (period > 0)
     assert (status == data.status.values)[periodic].all()
+    for name in [
+        f"{what}_{side}" for what in ("impacts", "contacts") for side in ("left", "right") if what in observed
+    ]:
+        counted = found.array("results", np.uint8).view(result_of(kind.masses))[name]
+        assert (counted == data[name].values)[periodic & (period == data.period.values)].all(), name
     assert (period == data.period.values).mean() > 0.9 and periodic.sum() > COLUMNS / 4
     gap = found.array("sections").reshape(COLUMNS, RECORD, -1)[..., 0]
     wanted, last = data.x1.values, RECORD - data.period.values

@@ -9,7 +9,7 @@ import numpy as np
 from support import compliant_branches
 from support.drawn_branches import drawn_case
 from support.same_branch import CLOSE, TooLongError, follow
-from vibro_sweep.oscillator.linear import family_of
+from vibro_sweep.oscillator.family import family_of
 
 MODELS = ("two_mass", "one_mass", "chain", "linear")
 DECADES = range(3, 17)  # of the way from the graze to the second point beside it: the first may be as near as 1e-8

@@ -6,7 +6,8 @@ import numpy as np
 
 import vibro_sweep as vs
 from support.drawn_oscillators import positive
-from vibro_sweep.oscillator.linear import amplitudes, family_of, static_state
+from vibro_sweep.oscillator.family import family_of
+from vibro_sweep.oscillator.linear import amplitudes, static_state
 from vibro_sweep.types import PeriodicOrbit
 
 MODELS = ("two_mass", "one_mass", "ball_in_cavity", "chain", "linear")

@@ -8,7 +8,7 @@ import pytest
 import vibro_sweep as vs
 from vibro_sweep.analysis.branches.branch_orbits import solution_of
 from vibro_sweep.analysis.periodic.periodic_orbit import orbit_of
-from vibro_sweep.oscillator.linear import family_of
+from vibro_sweep.oscillator.family import family_of
 
 SYSTEM = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=6.6)
 BESIDE = 1e-9

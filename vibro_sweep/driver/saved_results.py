@@ -21,7 +21,7 @@ from vibro_sweep.driver.origins import Source, attributes_of
 from vibro_sweep.driver.provenance import provenance
 from vibro_sweep.files.making import make
 from vibro_sweep.files.subject import about_run, check_outputs
-from vibro_sweep.oscillator.linear import Family
+from vibro_sweep.oscillator.family import Family
 from vibro_sweep.oscillator.oscillator import Oscillator
 from vibro_sweep.results import ragged_dataset
 from vibro_sweep.scene import Continuation

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.oscillator.linear import STOP_LAW
+from vibro_sweep.oscillator.linear import StopLaw
 from vibro_sweep.tables.observables import OF_AN_ORBIT, dimensions
 
 
@@ -24,7 +24,7 @@ def point_of(kind: Kind) -> np.dtype:
     n = kind.masses
     contact = [
         # of the left stop and the right one the numbers of its law, over m_e: k, which is 0 if it is rigid, c and p
-        ("contact_law", float, (2, len(STOP_LAW))),
+        ("contact_law", float, (2, len(StopLaw._fields))),
         ("release", np.int64),  # of engine/compliant/stop_laws.py
         ("contact_rate", float, 2),  # the fastest in contact
         ("contact_mass", float),  # m_e

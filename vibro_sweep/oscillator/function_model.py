@@ -8,7 +8,8 @@ import numpy as np
 
 from vibro_sweep.checks.arguments import check_type
 from vibro_sweep.checks.errors import ArgumentError
-from vibro_sweep.oscillator.linear import Family, Linear
+from vibro_sweep.oscillator.family import Family
+from vibro_sweep.oscillator.linear import Linear
 from vibro_sweep.oscillator.models.declaration import Model
 from vibro_sweep.oscillator.oscillator import Oscillator
 from vibro_sweep.tables.quantity import Parameter

@@ -5,8 +5,9 @@ import math
 
 import numpy as np
 
+from vibro_sweep.oscillator.family import stack_of
 from vibro_sweep.oscillator.function_model import FunctionModel, sizes_of, stored_of
-from vibro_sweep.oscillator.linear import Linear, mapped, stack_of, stacked
+from vibro_sweep.oscillator.linear import Linear, mapped, stacked
 from vibro_sweep.oscillator.oscillator import Oscillator, following, in_closed_form
 from vibro_sweep.oscillator.other_words import with_omega
 from vibro_sweep.oscillator.paper_motion import resolved

@@ -8,30 +8,34 @@ restitution of the stop that is hit. What is computed of an oscillator is so far
 
 import math
 import operator
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
-from functools import cached_property, lru_cache, reduce, wraps
+from collections.abc import Callable, Sequence
+from functools import lru_cache, reduce, wraps
 from operator import attrgetter
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.checks.errors import ArgumentError, ArgumentTypeError
-from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.oscillator.contact_laws.compliant import LAW as COMPLIANT
-from vibro_sweep.oscillator.other_words import with_omega
 from vibro_sweep.oscillator.stacks import least_squares
 from vibro_sweep.oscillator.steady import gap_responses, grazing_phases, responses, static_states, steady_amplitudes
-from vibro_sweep.oscillator.stops import NUMBERS, stop_of, why_rigid
-from vibro_sweep.tables.parameters import CYCLES, FREQUENCY
+from vibro_sweep.oscillator.stops import NUMBERS, stop_of
 
 MATRICES = ("M", "K", "C", "contact.normal", "omega")  # numbers that move free modes,
 FORCED = (*MATRICES, "constant", "sine", "cosine")  # the steady motion too,
 MOTION = (*FORCED, "tau")  # and the flight from a time on
-RANKS = dict.fromkeys(("M", "K", "C"), 2) | dict.fromkeys(("contact.normal", "constant", "sine", "cosine"), 1)
-STOP_LAW = ("k", "c", "p")  # numbers of a compliant stop: fields with _low and _high
 LEAST = 1e-100  # stiffness of a stop that is a damper alone: no double is that small beside another of a machine
 STEP = 1e-100  # of the complex step: its square underflows, so that a derivative has no truncation error
+
+
+class StopLaw(NamedTuple):
+    """The numbers of a compliant stop, F = k delta + c delta' + p; of a rigid one they are 0.
+
+    In `LinearContact` each has a field with _low and one with _high.
+    """
+
+    k: float
+    c: float
+    p: float
 
 
 class LinearContact(NamedTuple):
@@ -72,7 +76,7 @@ class LinearContact(NamedTuple):
     def symmetric(self) -> bool:
         """Whether gap -> -gap maps its stops to its stops."""
         left, right = self.law(-1), self.law(1)
-        return self.low == -self.high and left == right and (left[0] > 0 or self.R_low == self.R_high)
+        return self.low == -self.high and left == right and (left.k > 0 or self.R_low == self.R_high)
 
     @property
     def compliant(self) -> bool:
@@ -91,9 +95,10 @@ class LinearContact(NamedTuple):
         """Coefficients of restitution of the stops on these sides (+1 high, -1 low)."""
         return np.where(np.asarray(sides) > 0, self.R_high, self.R_low)
 
-    def law(self, side: int) -> tuple:
+    def law(self, side: int) -> StopLaw:
         """Stiffness, damping and preload of the stop on this side."""
-        return (self.k_high, self.c_high, self.p_high) if side > 0 else (self.k_low, self.c_low, self.p_low)
+        end = "high" if side > 0 else "low"
+        return StopLaw(*[getattr(self, f"{name}_{end}") for name in StopLaw._fields])
 
 
 class Linear(NamedTuple):
@@ -160,68 +165,6 @@ def mapped(function: Callable, *oscillators: Linear) -> Linear:
         for same in zip(*contacts, strict=True)
     ]
     return Linear(*(function(name, *x) for name, x in zip(Linear._fields, fields, strict=False)), tuple(each))
-
-
-@dataclass(frozen=True)
-class Family:
-    """Oscillators with parameters that have names: `build(**numbers)` gives a `Linear`.
-
-    `build` must accept complex numbers and be analytic in them: derivatives are taken by a complex step.
-
-    Examples
-    --------
-    A periodic orbit of a family has the derivatives that its `build` has.
-
-    >>> import vibro_sweep as vs
-    >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
-    >>> family = system.family
-    >>> float(family.derivative("b").contacts[0].high), family.replace(b=5.0).numbers["b"]
-    (1.0, 5.0)
-    """
-
-    build: Callable[..., Linear]
-    numbers: dict
-
-    @property
-    def free(self) -> dict[str, float]:
-        """The numbers that have a value, those that may be changed along a branch; and the frequency."""
-        known = {name: value for name, value in self.numbers.items() if isinstance(value, (int, float))}
-        if FREQUENCY.name not in known or CYCLES.name in known:
-            return known
-        return known | {CYCLES.name: known[FREQUENCY.name] / (2 * math.pi)}
-
-    def replace(self, **changes) -> "Family":
-        """The same family with other numbers."""
-        return Family(self.build, self.numbers | with_omega(changes, self.numbers))
-
-    def built_with(self, changes: Mapping[str, Any]) -> Linear:
-        """The oscillator with other numbers, which may be complex; of arrays the stack."""
-        return self.build(**(self.numbers | with_omega(changes, self.numbers)))
-
-    @cached_property
-    def built(self) -> Linear:
-        """The oscillator; its phase is None where it follows from the motion."""
-        return self.build(**self.numbers)
-
-    @cached_property
-    def linear(self) -> Linear:
-        """The oscillator, its phase resolved."""
-        return self.built._replace(tau=grazing_phase(self.built)) if self.built.tau is None else self.built
-
-    def derivative(self, name: str, linear: Linear | None = None) -> Linear:
-        """Derivatives of all fields by the parameter `name`, exact to rounding. linear: this one's, if it is known."""
-        step = self.built_with({name: self.free[name] + 1j * STEP})
-        slope = mapped(_imaginary, step)
-        if step.tau is None:
-            slope = slope._replace(tau=grazing_phase_slope(linear or self.linear, slope))
-        return slope
-
-
-def _imaginary(name: str, value) -> np.ndarray | float:
-    """What the complex step of a derivative has left of a number."""
-    if name == "tau":
-        return 0.0 if value is None else float(np.imag(value)) / STEP
-    return np.imag(value) / STEP if np.iscomplexobj(value) else np.zeros(np.shape(value))
 
 
 def stepped(q: Linear, slope: Linear) -> Linear:
@@ -332,27 +275,6 @@ def static_state(q: Linear) -> np.ndarray | None:
     return state if np.isfinite(state).all() else None
 
 
-def stack_of(family: Family, shape: tuple[int, ...], changes: dict[str, np.ndarray]) -> Linear:
-    """The oscillators of a family with these numbers, arrays that broadcast to `shape`: a stack, phases resolved."""
-    built = family.built_with(changes)
-    q = mapped(lambda name, x: None if x is None else _everywhere(name, x, shape), built)
-    if q.tau is not None:
-        return q
-    leads = [_lead(name, x) for name, x in zip(FORCED, attrgetter(*FORCED)(built), strict=True)]
-    alike = np.broadcast_shapes(*leads)  # of those that differ in stops alone
-    forced = mapped(lambda name, x: _everywhere(name, x, alike) if name in FORCED else x, built)
-    return q._replace(tau=np.broadcast_to(grazing_phases(gap_responses(forced, steady_amplitudes(forced))), shape))
-
-
-def _lead(name: str, x: np.ndarray) -> tuple[int, ...]:
-    """The shape of the stack of which x is the field `name`."""
-    return np.shape(x)[: np.ndim(x) - RANKS.get(name, 0)]
-
-
-def _everywhere(name: str, x: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
-    return np.broadcast_to(x, shape + np.shape(x)[len(_lead(name, x)) :])
-
-
 def rest_state(q: Linear) -> np.ndarray:
     """Positions (..., N) from which to start at rest: zero, or the static equilibrium held on the nearer stop.
 
@@ -398,23 +320,6 @@ def contact(normal, *, b, offset=0.0, stops="both", release="displacement", **nu
         **{f"{field}_high": high.number(*number) for field, number in fields.items()},
         **{f"k_{name}": stop.number("k_stop", -LEAST) + LEAST for name, stop in (("low", low), ("high", high))},
     )
-
-
-def family_of(system) -> Family:
-    """The oscillators that `system` is one of, by the names of its numbers. TypeError for anything else."""
-    if isinstance(system, Family):
-        return system
-    if not isinstance(getattr(system, "family", None), Family):
-        raise ArgumentTypeError(not_allowed("system", system, "a System or an Oscillator"))
-    return system.family
-
-
-def rigid_family_of(system, what: str) -> Family:
-    """The same, for what is computed with rigid stops alone (`NEEDS_IMPACTS`). Raises ValueError where one is not."""
-    family = family_of(system)
-    if family.built.compliant:
-        raise ArgumentError(not_allowed("system", system, f"with rigid stops: {why_rigid(what)}"))
-    return family
 
 
 def forcing_period(q: Linear) -> float:

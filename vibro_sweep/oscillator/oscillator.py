@@ -23,7 +23,8 @@ from vibro_sweep.oscillator.checked_numbers import UNITS_ALLOWED, checked_number
 from vibro_sweep.oscillator.contact_element import NAMES as CONTACT_NAMES
 from vibro_sweep.oscillator.contact_element import Contact, check_left_out, contacts_in
 from vibro_sweep.oscillator.contact_laws import OTHER_STOPS, STOP_NUMBERS
-from vibro_sweep.oscillator.linear import Family, Linear
+from vibro_sweep.oscillator.family import Family
+from vibro_sweep.oscillator.linear import Linear
 from vibro_sweep.oscillator.models import MODELS, model_named
 from vibro_sweep.oscillator.models.declaration import OF_STOPS, STOPS, UNITS, WHICH_STOPS, Model, Option, linear_of
 from vibro_sweep.oscillator.models.two_mass import MODEL, PAPER, PARAMETERS

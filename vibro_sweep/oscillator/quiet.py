@@ -10,7 +10,8 @@ from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.checks.real import array_of
 from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.oscillator.checked_numbers import range_of
-from vibro_sweep.oscillator.linear import Family, Linear, roots, stack_of
+from vibro_sweep.oscillator.family import Family, stack_of
+from vibro_sweep.oscillator.linear import Linear, roots
 from vibro_sweep.oscillator.oscillator import Oscillator, checked_system
 from vibro_sweep.oscillator.stacks import dot
 from vibro_sweep.oscillator.steady import gap_responses, static_states, steady_amplitudes

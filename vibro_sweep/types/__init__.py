@@ -18,8 +18,9 @@ from vibro_sweep.analysis.windows.window import Window, Windows
 from vibro_sweep.driver.cost import Estimate
 from vibro_sweep.driver.sweep import RunReport
 from vibro_sweep.live.served_page import LivePage
+from vibro_sweep.oscillator.family import Family
 from vibro_sweep.oscillator.grazing import Grazing
-from vibro_sweep.oscillator.linear import Family, Linear, LinearContact
+from vibro_sweep.oscillator.linear import Linear, LinearContact
 from vibro_sweep.oscillator.modes import Modes
 from vibro_sweep.oscillator.quiet import Quiet
 from vibro_sweep.oscillator.window_families import WindowFamily

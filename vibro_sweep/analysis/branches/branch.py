@@ -39,7 +39,8 @@ from vibro_sweep.checks.arguments import (
 )
 from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.checks.refusals import not_allowed
-from vibro_sweep.oscillator.linear import Family, Linear, family_of
+from vibro_sweep.oscillator.family import Family, family_of
+from vibro_sweep.oscillator.linear import Linear
 from vibro_sweep.oscillator.stops import NOT_PRESSED
 from vibro_sweep.tables.file_columns import BRANCHES, OF_CONTACTS
 from vibro_sweep.tables.observables import ALONG_BRANCHES

@@ -15,7 +15,8 @@ from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.continuation.starting_orbit import keeps_symmetry
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit, orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.oscillator.linear import family_of, forcing_period
+from vibro_sweep.oscillator.family import family_of
+from vibro_sweep.oscillator.linear import forcing_period
 from vibro_sweep.tables.bifurcations import BIRTHS, CODES, CRITICALITIES, KINDS, TYPES
 from vibro_sweep.tables.coordinates import state
 from vibro_sweep.tables.file_columns import OF_CONTACTS

@@ -8,7 +8,7 @@ from vibro_sweep.analysis.periodic.contact_numbers import one_plus_R
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit, orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses.free_modes import checked_cells
-from vibro_sweep.oscillator.linear import family_of
+from vibro_sweep.oscillator.family import family_of
 
 Arrays = dict[str, np.ndarray]
 

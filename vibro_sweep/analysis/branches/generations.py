@@ -15,7 +15,7 @@ from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.checks.arguments import check_call, check_type, checked_count, names_its_arguments
 from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.checks.refusals import not_allowed
-from vibro_sweep.oscillator.linear import family_of
+from vibro_sweep.oscillator.family import family_of
 from vibro_sweep.tables.bifurcations import WAYS
 
 

@@ -34,8 +34,8 @@ def permanent_contact(s: Solution, name: str, unit: float) -> PermanentContact |
     if s.K != 1 or s.sigma != 1 or not s.rests or not s.contacts[0]:
         return None
     side, last = s.sides[0], s.family.free[name]
-    _, damping, preload = q.contact.law(side)
-    leaves_by_force = q.contact.by_force and damping > 0 and not preload > 0  # before it is back at the stop's place
+    law = q.contact.law(side)
+    leaves_by_force = q.contact.by_force and law.c > 0 and not law.p > 0  # before it is back at the stop's place
     if leaves_by_force or not q.omega * (s.times[0] + s.P - s.ends[0]) < SHORT:
         return None
 
@@ -66,9 +66,9 @@ def permanent_contact(s: Solution, name: str, unit: float) -> PermanentContact |
 
 def pressed(q: Linear, side: int) -> Linear:
     """The oscillator that never leaves the stop on this side: M x'' + (C + c n n^T) x' + (K + k n n^T) x = ..."""
-    (k, c, p), normal = q.contact.law(side), q.contact.normal
-    both, force = np.outer(normal, normal), k * float(q.contact.stop(side)) - side * p
-    return q._replace(K=q.K + k * both, C=q.C + c * both, constant=q.constant + force * normal)
+    law, normal = q.contact.law(side), q.contact.normal
+    both, force = np.outer(normal, normal), law.k * float(q.contact.stop(side)) - side * law.p
+    return q._replace(K=q.K + law.k * both, C=q.C + law.c * both, constant=q.constant + force * normal)
 
 
 def _least(q: Linear, side: int) -> tuple[float, SteadyGap]:

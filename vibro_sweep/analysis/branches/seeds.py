@@ -8,7 +8,7 @@ from vibro_sweep.analysis.branches.branch_arrays import Arrays
 from vibro_sweep.analysis.continuation.starting_orbit import KINDS, StartingOrbit
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit, orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.oscillator.linear import family_of
+from vibro_sweep.oscillator.family import family_of
 
 TYPES = ("orbit", *KINDS)
 SCALARS = {"sigma": int, "half_periods": int, "index": int, "theta": float, "special": int}

@@ -14,7 +14,8 @@ from vibro_sweep.analysis.periodic.orbit_motion import OrbitMotion
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.seeds_of_free_motion import touching_at_once
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.oscillator.linear import Family, Linear
+from vibro_sweep.oscillator.family import Family
+from vibro_sweep.oscillator.linear import Linear
 
 
 @dataclass(frozen=True, eq=False, repr=False)

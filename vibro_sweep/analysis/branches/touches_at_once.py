@@ -30,7 +30,7 @@ class TouchesAtOnce:
         q, t = touching.family.linear, touching.times
         self.moved, self.sides = moved, np.array(touching.sides, float)
         self.smooth = np.array([is_smooth(q, side) for side in touching.sides])
-        dampers = [q.contact.law(side)[1] for side in touching.sides]
+        dampers = [q.contact.law(side).c for side in touching.sides]
         corners = np.array([has_corner(q, side) for side in touching.sides])
         push = contact_coordinates(q).by_force[0] @ q.contact.normal  # 1/m_e
         self.corners = np.where(corners, dampers, 0.0) * push

@@ -1,6 +1,6 @@
 """How far a number of a system may go, of the bounds within which a branch or a curve is followed."""
 
-from vibro_sweep.oscillator.linear import family_of
+from vibro_sweep.oscillator.family import family_of
 
 
 def in_range(system, name: str, bound: float) -> float:

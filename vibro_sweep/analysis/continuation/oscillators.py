@@ -13,7 +13,8 @@ from vibro_sweep.engine.impulses.extremes import middle_weights
 from vibro_sweep.engine.impulses.flow import flow, rates
 from vibro_sweep.engine.impulses.free_modes import checked_cells
 from vibro_sweep.engine.impulses.taylor_orders import exponential, taylor_rows
-from vibro_sweep.oscillator.linear import MOTION, Family, Linear
+from vibro_sweep.oscillator.family import Family
+from vibro_sweep.oscillator.linear import MOTION, Linear
 
 FEW = 4  # degree that is tried first
 DECAYED = 4e-15  # relative size of the last coefficients

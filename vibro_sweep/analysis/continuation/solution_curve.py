@@ -16,7 +16,7 @@ from vibro_sweep.engine.continuation.curve_tests import TOUCHING
 from vibro_sweep.engine.continuation.moving_flow import OMEGA
 from vibro_sweep.engine.continuation.problem import GRAZE, STICK, Problem, unknowns
 from vibro_sweep.engine.continuation.workspace import TEST, Place, new_workspace
-from vibro_sweep.oscillator.linear import Family
+from vibro_sweep.oscillator.family import Family
 
 LONGEST_STEP, SHORTEST_STEP = 0.05, 1e-11
 STRAIGHT = 0.1  # radians between the tangents of neighbouring points, at most

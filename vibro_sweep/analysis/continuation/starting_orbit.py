@@ -6,7 +6,7 @@ import numpy as np
 
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation.problem import FLIP, FOLD, GRAZE, ORBIT, STICK, TORUS
-from vibro_sweep.oscillator.linear import Family
+from vibro_sweep.oscillator.family import Family
 from vibro_sweep.tables.bifurcations import TYPES
 
 CONDITIONS = {"": ORBIT, "fold": FOLD, "flip": FLIP, "torus": TORUS, "graze": GRAZE, "stick": STICK}

@@ -32,7 +32,7 @@ from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.engine.continuation.curve_tests import TOUCHING
 from vibro_sweep.engine.continuation.problem import GRAZE
 from vibro_sweep.engine.continuation.workspace import TEST, Place
-from vibro_sweep.oscillator.linear import Family, family_of
+from vibro_sweep.oscillator.family import Family, family_of
 from vibro_sweep.tables.file_columns import CHART
 
 if TYPE_CHECKING:

@@ -29,10 +29,10 @@ def numbers_of(q: Linear, units: EventUnits) -> list[float]:
     length, rate = units
     laws = []
     one, sides = q.contact, (-1, 1)
-    if any(np.real(one.law(side)[0]) > 0 for side in sides):
+    if any(np.real(one.law(side).k) > 0 for side in sides):
         push = contact_coordinates(q).by_force[0] @ one.normal  # 1/m_e
-        for k, c, p in map(one.law, sides):
-            laws += [k * push / rate**2, c * push / rate, p * push / (rate**2 * length)]
+        for law in map(one.law, sides):
+            laws += [law.k * push / rate**2, law.c * push / rate, law.p * push / (rate**2 * length)]
     R_low, R_high = (0.0 if np.real(k) > 0 else R for k, R in ((one.k_low, one.R_low), (one.k_high, one.R_high)))
     return [*laws, one.low / length, one.high / length, 1 + R_low, 1 + R_high, q.omega / rate]
 
@@ -64,17 +64,17 @@ def presses_too_long(q: Linear) -> bool:
 def is_smooth(q: Linear, side: int) -> bool:
     """Whether a contact with this stop begins like the square root of what passes the stop: orbits go on through its
     graze, or turn back where it ends by force."""
-    return bool(q.contact.is_compliant(side)) and q.contact.law(side)[2] == 0
+    return bool(q.contact.is_compliant(side)) and q.contact.law(side).p == 0
 
 
 def has_corner(q: Linear, side: int) -> bool:
     """Whether multipliers jump at the graze of a contact with this stop, by its damper."""
-    return q.contact.by_force and is_smooth(q, side) and q.contact.law(side)[1] > 0
+    return q.contact.by_force and is_smooth(q, side) and q.contact.law(side).c > 0
 
 
 def preload(q: Linear, side: int) -> float:
     """The acceleration with which the preload of a compliant stop takes the gap back; 0 of other stops."""
-    force = q.contact.law(side)[2] if q.contact.is_compliant(side) else 0.0
+    force = q.contact.law(side).p if q.contact.is_compliant(side) else 0.0
     return float(force * (contact_coordinates(q).by_force[0] @ q.contact.normal))
 
 

@@ -38,7 +38,7 @@ class _Contact:
             start[None].copy(),
         )
         self.N = q.masses
-        (self.k, self.c, self.p), self.stop = q.contact.law(side), float(q.contact.stop(side))
+        self.law, self.stop = q.contact.law(side), float(q.contact.stop(side))
 
     def at(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Depth, its rate, the force and its rate, so long after the touch."""
@@ -47,7 +47,8 @@ class _Contact:
         flights.sample_flights(self.flow, self.start, self.begin, none, self.begin + times, out, workspace)
         depth, speed = self.side * (out[:, 0] - self.stop), self.side * out[:, self.N]
         rate = self.side * (out @ self.flow.B.T)[:, self.N]
-        return depth, speed, self.k * depth + self.c * speed + self.p, self.k * speed + self.c * rate
+        k, c, p = self.law.k, self.law.c, self.law.p
+        return depth, speed, k * depth + c * speed + p, k * speed + c * rate
 
     def zeros(self, which: int, length: float) -> list[float]:
         """The times at which one of these numbers changes its sign downwards."""

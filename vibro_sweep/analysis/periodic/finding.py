@@ -18,7 +18,7 @@ from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.checks.real import array_of
 from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.engine.impulses.free_modes import ResonanceError, TooStiffError, without_orbit
-from vibro_sweep.oscillator.linear import family_of
+from vibro_sweep.oscillator.family import family_of
 from vibro_sweep.tables.coordinates import checked_state
 
 MOST_PERIODS = 10**6

@@ -19,7 +19,8 @@ from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.engine.impulses import flights
 from vibro_sweep.engine.impulses.flow import flow
-from vibro_sweep.oscillator.linear import Family, amplitudes, forcing_period
+from vibro_sweep.oscillator.family import Family
+from vibro_sweep.oscillator.linear import amplitudes, forcing_period
 
 SEEDS = 4000
 AT_ONCE = 250  # of them: the orbit may be among the first

@@ -12,7 +12,7 @@ from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.analysis.single.orbit import simulate
 from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.checks.refusals import not_allowed
-from vibro_sweep.oscillator.linear import Family
+from vibro_sweep.oscillator.family import Family
 from vibro_sweep.oscillator.own_time import as_lengths
 
 ROUNDS = 4  # periods that are simulated, so that a whole one begins between any two of its events

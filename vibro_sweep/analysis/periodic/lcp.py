@@ -25,7 +25,8 @@ from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.engine.impulses import flights
 from vibro_sweep.engine.impulses.flow import closing, flow
 from vibro_sweep.engine.impulses.free_modes import has_free_gap
-from vibro_sweep.oscillator.linear import Linear, forcing_period, rigid_family_of
+from vibro_sweep.oscillator.family import rigid_family_of
+from vibro_sweep.oscillator.linear import Linear, forcing_period
 
 BESIDE = (1e-4, 1e-5, 1e-6, 1e-7)  # distances from b*, over the amplitude of the gap, at which an orbit is confirmed
 NEAR = 0.1  # relative difference of the impulses there from those of lowest order

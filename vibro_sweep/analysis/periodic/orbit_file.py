@@ -15,7 +15,7 @@ from vibro_sweep.checks.file_names import ExistingFileError, FileError, checked_
 from vibro_sweep.checks.real import array_of, number_of
 from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.engine.impulses.free_modes import ResonanceError, TooStiffError, without_orbit
-from vibro_sweep.oscillator.linear import family_of
+from vibro_sweep.oscillator.family import family_of
 from vibro_sweep.oscillator.models import DEFAULT
 from vibro_sweep.oscillator.oscillator import Oscillator
 

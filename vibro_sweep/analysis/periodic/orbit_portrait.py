@@ -3,7 +3,8 @@
 import numpy as np
 
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
-from vibro_sweep.oscillator.linear import family_of, forcing_period
+from vibro_sweep.oscillator.family import family_of
+from vibro_sweep.oscillator.linear import forcing_period
 
 WIDTH, HEIGHT, EDGE = 240, 160, 8  # of the drawing, in its own units
 PIXELS = 84, 56

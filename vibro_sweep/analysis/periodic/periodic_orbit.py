@@ -23,7 +23,8 @@ from vibro_sweep.engine.impulses import flights
 from vibro_sweep.engine.impulses.flow import constrained_flow, contact_coordinates, contact_flow, flow
 from vibro_sweep.engine.impulses.free_modes import ResonanceError, without_orbit
 from vibro_sweep.engine.one_system import CONTACT, IMPACT, STICKING, impact_of
-from vibro_sweep.oscillator.linear import Family, family_of, forcing_period
+from vibro_sweep.oscillator.family import Family, family_of
+from vibro_sweep.oscillator.linear import forcing_period
 from vibro_sweep.oscillator.oscillator import Oscillator, System
 from vibro_sweep.tables.outcomes import ORBITS, named
 

@@ -14,7 +14,8 @@ import numpy as np
 from vibro_sweep.analysis.periodic.contact_numbers import one_plus_R
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses.flow import contact_coordinates
-from vibro_sweep.oscillator.linear import Family, Linear
+from vibro_sweep.oscillator.family import Family
+from vibro_sweep.oscillator.linear import Linear
 
 MOST_DAMPED = 0.95  # of z, beyond which a contact of a free mass is as long as with this
 STIFFER = 1e4, 1e2, 1.0  # times the stiffness, at the same z
@@ -23,9 +24,9 @@ STIFFER = 1e4, 1e2, 1.0  # times the stiffness, at the same z
 def of_free_mass(q: Linear, side: int) -> tuple[float, float]:
     """Restitution and duration of a contact of a free mass with a compliant stop."""
     push = contact_coordinates(q).by_force[0] @ q.contact.normal  # 1/m_e
-    k, c, _ = q.contact.law(side)
-    rate = math.sqrt(k * push)
-    z = min(c * push / (2 * rate), MOST_DAMPED)
+    law = q.contact.law(side)
+    rate = math.sqrt(law.k * push)
+    z = min(law.c * push / (2 * rate), MOST_DAMPED)
     root, turned = math.sqrt(1 - z * z), math.pi - (2 * math.asin(z) if q.contact.by_force else 0.0)
     return math.exp(-turned * z / root), turned / (rate * root)
 

@@ -14,7 +14,8 @@ from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.analysis.periodic.steady_gap import steady_gap
 from vibro_sweep.engine.continuation.curve_tests import TOUCHING
 from vibro_sweep.engine.impulses.free_modes import has_free_gap
-from vibro_sweep.oscillator.linear import Family, Linear
+from vibro_sweep.oscillator.family import Family
+from vibro_sweep.oscillator.linear import Linear
 
 DEPTHS = 4.0 ** np.arange(-5, 1)  # of what the free motion passes a stop by
 SHORTEST = 1e-9  # of its amplitude

@@ -18,7 +18,8 @@ from vibro_sweep.analysis.periodic.resting_orbit import RestingOrbit
 from vibro_sweep.analysis.periodic.steady_gap import steady_gap
 from vibro_sweep.engine.impulses.flow import flow
 from vibro_sweep.engine.impulses.free_modes import has_free_gap
-from vibro_sweep.oscillator.linear import MOTION, Family, KeyOfFields, forcing_period
+from vibro_sweep.oscillator.family import Family
+from vibro_sweep.oscillator.linear import MOTION, KeyOfFields, forcing_period
 
 # Relative difference below which two halves (periods) of an orbit are the same. An orbit that is born at a pitchfork or
 # flip differs by so much at a distance of some 1e-12; nearer to it Newton's method does not distinguish the two orbits.

@@ -9,7 +9,8 @@ from vibro_sweep.checks.real import number_of
 from vibro_sweep.checks.refusals import not_allowed
 from vibro_sweep.engine.motion.discontinuity import iterate_one
 from vibro_sweep.engine.one_system import Engine
-from vibro_sweep.oscillator.linear import gap_response, grazing_state, push_of, rigid_family_of
+from vibro_sweep.oscillator.family import rigid_family_of
+from vibro_sweep.oscillator.linear import gap_response, grazing_state, push_of
 from vibro_sweep.oscillator.oscillator import Oscillator, checked_system
 from vibro_sweep.tables.coordinates import checked_state
 

@@ -12,7 +12,7 @@ from vibro_sweep.engine.impulses.free_modes import has_free_gap, turns
 from vibro_sweep.engine.one_system import plan_of
 from vibro_sweep.engine.records import new_results, starts_at
 from vibro_sweep.engine.simd.lanes import LANES
-from vibro_sweep.oscillator.linear import family_of
+from vibro_sweep.oscillator.family import family_of
 from vibro_sweep.oscillator.own_time import with_velocities
 from vibro_sweep.tables.exponents import sign_of
 from vibro_sweep.tables.outcomes import NOT_SETTLED, is_valid

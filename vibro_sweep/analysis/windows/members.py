@@ -9,7 +9,7 @@ from vibro_sweep.analysis.branches.branch_orbits import Arrays, solution_of
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import ALIKE, Solution, corrected
 from vibro_sweep.analysis.windows.job import are_near
-from vibro_sweep.oscillator.linear import family_of
+from vibro_sweep.oscillator.family import family_of
 from vibro_sweep.tables.bifurcations import BIRTHS, BY_NAME, TYPES
 
 

@@ -71,9 +71,9 @@ def stops_of(contacts: Sequence[LinearContact]) -> list[Stop]:
     found = []
     for number, one in enumerate(contacts, 1):
         for side in (1, -1):
-            place, R = float(one.stop(side)), float(one.restitution(side))
+            place, R, law = float(one.stop(side)), float(one.restitution(side)), one.law(side)
             if math.isfinite(place):
-                found.append(Stop(number, one.normal, side, place, R, *one.law(side), one.by_force))
+                found.append(Stop(number, one.normal, side, place, R, law.k, law.c, law.p, one.by_force))
     return found
 
 

@@ -125,12 +125,12 @@ def constrained_flow(q: Linear) -> Flow:
 def contact_flow(q: Linear, side: int) -> Flow:
     """Tables of the motion in contact with a compliant stop (+1 high, -1 low)."""
     N, B = q.masses, rates(q)
-    (k, c, p), stop = q.contact.law(side), q.contact.stop(side)
+    law, stop = q.contact.law(side), q.contact.stop(side)
     push = contact_coordinates(q).by_force[0] @ q.contact.normal  # 1/m_e
-    B[N, 0] -= k * push
-    B[N, N] -= c * push
-    B[N, -1] -= (side * p - k * stop) * push
-    return _flow(q, B, math.sqrt(k * push) + c * push)
+    B[N, 0] -= law.k * push
+    B[N, N] -= law.c * push
+    B[N, -1] -= (side * law.p - law.k * stop) * push
+    return _flow(q, B, math.sqrt(law.k * push) + law.c * push)
 
 
 def _flow(q: Linear, B: np.ndarray, rate: float = 0.0) -> Flow:

@@ -21,23 +21,26 @@ export function orbitOf(kernel, task, diagram, motion) {
   const all = flight.impacts.filter(({ t }) => t < whole * T * (1 - 1e-9)), seen = all.filter(({ t }) => t <= shown * T);
   arrays.impact_t = Float32Array.from(seen, ({ t }) => t);
   arrays.impact_side = Int8Array.from(seen, ({ side }) => side);
-  [arrays.contact_touch, arrays.contact_release] = contacts(kernel, v, arrays);
+  const pressed = contacts(v, flight), drawn = pressed.filter(([touch]) => touch <= shown * T);
+  arrays.contact_touch = Float32Array.from(drawn, ([touch]) => touch);
+  arrays.contact_release = Float32Array.from(drawn, ([, release]) => Math.min(release, shown * T));
+  const begun = pressed.filter(([touch]) => touch > 0).length; // one that goes on at t = 0 begins at the end
   const itinerary = period && whole === period ? word(all, T, period * T) : "";
-  return { words: { ...words, periods: shown, impacts: all.length, rests: 0, contacts: arrays.contact_touch.length, itinerary, orbit_status: "ok" }, arrays };
+  return { words: { ...words, periods: shown, impacts: all.length, rests: 0, contacts: begun, itinerary, orbit_status: "ok" }, arrays };
 }
 
-// from when to when compliant stops are pressed, to within a sample
-function contacts(kernel, v, { t, states }) {
-  const { low, high, normal, pressed } = heightOf.stops(v), touch = [], release = [], width = 2 * normal.length;
+// [from, to] of each time that compliant stops are pressed, to within a sample
+function contacts(v, { t, states }) {
+  const { low, high, normal, pressed } = heightOf.stops(v), found = [], width = 2 * normal.length;
   let inside = false;
   for (let n = 0; n < t.length; n++) {
     const gap = normal.reduce((sum, by, i) => sum + by * states[n * width + 2 * i], 0);
     const beyond = (pressed[0] && gap < low) || (pressed[1] && gap > high);
-    if (beyond !== inside) (beyond ? touch : release).push(t[n]);
+    if (beyond && !inside) found.push([t[n], t[t.length - 1]]);
+    if (!beyond && inside) found.at(-1)[1] = t[n];
     inside = beyond;
   }
-  if (inside) release.push(t[t.length - 1]);
-  return [Float32Array.from(touch), Float32Array.from(release)];
+  return found;
 }
 
 // the stops that are hit, as R and L, from the impact with which the least rotation begins, L < R; ties by the time in

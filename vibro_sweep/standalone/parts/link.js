@@ -130,8 +130,9 @@ export class Link {
       if (n === chain.length) return;
       const part = chain[n], told = say(part, "piece", () => --left === 0);
       this.enter(diagram.task(part, "piece", begun), (found, ms) => {
-        told(found, ms);
         go(chain, n + 1, found.begun);
+        this.next(); // a worker goes on while this part is drawn
+        told(found, ms);
       }, failed);
     };
     for (const chain of pieces) go(chain, 0, null);
@@ -224,8 +225,9 @@ class Diagram {
     const plan = kind === "preview"
       ? { ...this.plan, transient: Math.min(this.plan.transient, PREVIEW.transient), record: Math.min(this.plan.record, PREVIEW.record), lyapunov: false }
       : this.plan;
-    const states = columns.flatMap((column) => Array.from({ length: starts }, (_, s) => this.startAt(column, start + s)));
-    return { kind: "diagram", each, plan, starts: states, chain: Boolean(chain) && kind === "piece", begun };
+    const inOrder = Boolean(chain) && kind === "piece", started = inOrder ? columns.slice(0, 1) : columns;
+    const states = started.flatMap((column) => Array.from({ length: starts }, (_, s) => this.startAt(column, start + s)));
+    return { kind: "diagram", each, plan, starts: states, chain: inOrder, begun };
   }
 
   orbitTask(start, end, notSettled) {
