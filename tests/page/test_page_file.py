@@ -203,7 +203,7 @@ def where(browser, tmp_path):
 
 def check_counts(tab, name, data, kept):
     """A click finds as many impacts and contacts in a cycle as the sweep has, where nothing rests; of 12 orbits. It
-    sees contacts in samples, so those are compared that last for five of them on average."""
+    sees contacts in samples, so those are compared that last for two of them on average."""
     system, (axis, *_), more = SCENES[name]
     if "follow" in more.get("start", {}):
         return  # chains do not start where a click does
@@ -211,7 +211,7 @@ def check_counts(tab, name, data, kept):
     plain = (period > 0) & (60 % np.maximum(period, 1) == 0) & (data.min_impact_speed.values != 0)
     if system.linear.compliant:
         counts["contacts"] = (data.contacts_right + data.contacts_left).values
-        plain &= 60 * 200 * data.contact_time.values > 5 * counts["contacts"]
+        plain &= 60 * 200 * data.contact_time.values > 2 * counts["contacts"]
     orbits = {one[axis]: (one, part["plan"], part["starts"][i]) for part in kept for i, one in enumerate(part["each"])}
     compared = 0
     for i in np.flatnonzero(plain)[:: max(1, np.count_nonzero(plain) // 12)]:
