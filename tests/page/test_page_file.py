@@ -222,7 +222,7 @@ def check_counts(tab, name, data, kept):
                 what: count[i] * period[i] // 60 for what, count in counts.items()
             }, (axis, value)
             compared += 1
-    assert compared > 3
+    assert compared > 3 or "section" in more  # the period of an impact section is another one than that of a click
 
 
 @pytest.mark.slow

@@ -10,6 +10,7 @@ from support.in_digits import CONDITIONS, SLOW_IN_SIMULATION, moved_by, of_point
 from support.oscillators import PAPER
 
 SLOWEST = 1e-4  # impact speed: below it the reference's monodromy matrix is next to its pole
+AT_AN_END = 1e-6  # of the extent of a curve
 
 
 def types(curve):
@@ -23,11 +24,16 @@ def first(branch, kind):
 
 
 def chosen(curve, count):
-    """Indices of `count` points along the real part of a curve, where no impact but the grazing one is very slow."""
+    """Indices of `count` points along the real part of a curve, where no impact but the grazing one is very slow; none
+    that lie on its first or last one but for rounding, which are special: a curve of folds begins where two meet."""
     speeds = np.abs(curve.points.impact_v.values)
     if curve.type == "graze":
         speeds = np.delete(speeds, np.argmin(speeds.max(axis=0)), axis=1)
-    allowed = np.flatnonzero(~curve.points.virtual.values & (speeds.min(axis=1, initial=np.inf) > SLOWEST))
+    at = np.stack([curve.points[name].values for name in curve.parameters], 1)
+    extent = np.maximum(np.ptp(at, axis=0), np.finfo(float).tiny)
+    apart = np.minimum(*(np.abs((at - end) / extent).max(axis=1) for end in (at[0], at[-1]))) > AT_AN_END
+    apart[[0, -1]] = True
+    allowed = np.flatnonzero(~curve.points.virtual.values & apart & (speeds.min(axis=1, initial=np.inf) > SLOWEST))
     return allowed[np.linspace(0, len(allowed) - 1, count).round().astype(int)]
 
 
