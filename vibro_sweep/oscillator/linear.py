@@ -11,7 +11,7 @@ import operator
 from collections.abc import Callable, Sequence
 from functools import lru_cache, reduce, wraps
 from operator import attrgetter
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -95,8 +95,8 @@ class LinearContact(NamedTuple):
         """Coefficients of restitution of the stops on these sides (+1 high, -1 low)."""
         return np.where(np.asarray(sides) > 0, self.R_high, self.R_low)
 
-    def law(self, side: int) -> StopLaw:
-        """Stiffness, damping and preload of the stop on this side."""
+    def law(self, side: int) -> Any:
+        """Stiffness, damping and preload of the stop on this side, as .k, .c and .p."""
         end = "high" if side > 0 else "low"
         return StopLaw(*[getattr(self, f"{name}_{end}") for name in StopLaw._fields])
 
