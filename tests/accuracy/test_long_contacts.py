@@ -31,12 +31,12 @@ def exponents(system):
     q, N = system.linear, system.masses
     with mp.workdps(40):
         M, K, C = (mp.matrix([[mpf(float(x)) for x in row] for row in one]) for one in (q.M, q.K, q.C))
-        k, c, _ = map(float, q.contact.law(1))
+        law = q.contact.law(1)
         normal = [mpf(float(a)) for a in q.contact.normal]
         for i in range(N):
             for j in range(N):
-                K[i, j] += mpf(k) * normal[i] * normal[j]
-                C[i, j] += mpf(c) * normal[i] * normal[j]
+                K[i, j] += mpf(float(law.k)) * normal[i] * normal[j]
+                C[i, j] += mpf(float(law.c)) * normal[i] * normal[j]
         inverse, A = M**-1, mp.zeros(2 * N, 2 * N)
         A[:N, N:], A[N:, :N], A[N:, N:] = mp.eye(N), -inverse * K, -inverse * C
         return np.array(sorted((float(mp.re(one)) for one in mp.eig(A)[0]), reverse=True))

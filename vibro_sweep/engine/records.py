@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.oscillator.linear import StopLaw
+from vibro_sweep.oscillator.contact_laws.compliant import StopLaw
 from vibro_sweep.tables.observables import OF_AN_ORBIT, dimensions
 
 

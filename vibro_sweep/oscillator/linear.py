@@ -11,11 +11,12 @@ import operator
 from collections.abc import Callable, Sequence
 from functools import lru_cache, reduce, wraps
 from operator import attrgetter
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from vibro_sweep.oscillator.contact_laws.compliant import LAW as COMPLIANT
+from vibro_sweep.oscillator.contact_laws.compliant import StopLaw
 from vibro_sweep.oscillator.stacks import least_squares
 from vibro_sweep.oscillator.steady import gap_responses, grazing_phases, responses, static_states, steady_amplitudes
 from vibro_sweep.oscillator.stops import NUMBERS, stop_of
@@ -27,17 +28,6 @@ LEAST = 1e-100  # stiffness of a stop that is a damper alone: no double is that 
 STEP = 1e-100  # of the complex step: its square underflows, so that a derivative has no truncation error
 
 
-class StopLaw(NamedTuple):
-    """The numbers of a compliant stop, F = k delta + c delta' + p; of a rigid one they are 0.
-
-    In `LinearContact` each has a field with _low and one with _high.
-    """
-
-    k: float
-    c: float
-    p: float
-
-
 class LinearContact(NamedTuple):
     """The numbers of a contact; of a slope their derivatives.
 
@@ -45,8 +35,7 @@ class LinearContact(NamedTuple):
     low, high : positions of the stops; infinite where there is none
     R_low, R_high : their coefficients of restitution
     middle : the offset about which the stops lie
-    k_low, c_low, p_low, k_high, c_high, p_high : stiffness, damping and preload of compliant stops; 0 of rigid ones,
-        and of compliant ones R is NaN
+    k_low, c_low, p_low, k_high, c_high, p_high : the `StopLaw` of each; R of compliant stops is NaN
     by_force : whether contact ends where the force of the stop is zero, and not at zero displacement
 
     Examples
@@ -95,8 +84,8 @@ class LinearContact(NamedTuple):
         """Coefficients of restitution of the stops on these sides (+1 high, -1 low)."""
         return np.where(np.asarray(sides) > 0, self.R_high, self.R_low)
 
-    def law(self, side: int) -> Any:
-        """Stiffness, damping and preload of the stop on this side, as .k, .c and .p."""
+    def law(self, side: int) -> StopLaw:
+        """Of the stop on this side (+1 high, -1 low)."""
         end = "high" if side > 0 else "low"
         return StopLaw(*[getattr(self, f"{name}_{end}") for name in StopLaw._fields])
 
@@ -309,7 +298,8 @@ def contact(normal, *, b, offset=0.0, stops="both", release="displacement", **nu
     if unknown := numbers.keys() - {*NUMBERS}:
         raise TypeError(f"stops have no {', '.join(sorted(unknown))}")
     low, high = stop_of(numbers, "left"), stop_of(numbers, "right")
-    fields = {"R": ("R", np.nan), "c": ("c_stop", 0.0), "p": ("preload", 0.0)}
+    fields = {"R": ("R", np.nan)}
+    fields |= {field: (key, 0.0) for field, key in zip(StopLaw._fields[1:], COMPLIANT.names["right"][1:], strict=True)}
     return LinearContact(
         normal=normal,
         low=offset - b if stops != "right" else -np.inf,

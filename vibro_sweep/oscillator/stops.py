@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 from vibro_sweep.checks.refusals import ParameterError
 from vibro_sweep.oscillator.contact_laws import LAWS, RIGID, STOP_NUMBERS
 from vibro_sweep.oscillator.contact_laws.compliant import LAW as COMPLIANT
+from vibro_sweep.oscillator.contact_laws.compliant import StopLaw
 from vibro_sweep.oscillator.contact_laws.contact_law import ContactLaw
 
 NUMBERS = tuple(option.name for option in STOP_NUMBERS)
@@ -53,10 +54,10 @@ def stop_of(arguments: Mapping[str, Any], side: str) -> Stop:
     )
 
 
-def compliance_of(arguments: Mapping[str, Any], side: str) -> tuple[float, float, float] | None:
-    """Stiffness, damping and preload of the stop on a side, right or left; None where it is rigid."""
+def compliance_of(arguments: Mapping[str, Any], side: str) -> StopLaw | None:
+    """The law of the stop on a side, right or left; None where it is rigid."""
     stop = stop_of(arguments, side)
-    return tuple(stop.number(name, 0.0) for name in COMPLIANT.names["right"]) if stop.law is COMPLIANT else None
+    return StopLaw(*(stop.number(name, 0.0) for name in COMPLIANT.names["right"])) if stop.law is COMPLIANT else None
 
 
 def completed(numbers: Mapping[str, Any]) -> dict[str, Any]:
@@ -122,8 +123,8 @@ def _check_stiffness(arguments: Mapping[str, Any], side: str) -> None:
     key = COMPLIANT.names[side][0]
     if arguments.get(key) != 0:
         return
-    _, damping, preload = compliance_of(arguments, side)
-    if damping == 0 or preload > 0:
+    law = compliance_of(arguments, side)
+    if law.c == 0 or law.p > 0:
         raise ParameterError(key, arguments[key], f"a number > 0 {DAMPER_ALONE}")
 
 

@@ -8,6 +8,7 @@ from vibro_sweep.checks.errors import ArgumentError
 from vibro_sweep.checks.refusals import shown
 from vibro_sweep.files.file_errors import StoreError
 from vibro_sweep.oscillator.catalogue import OF_A_SYSTEM
+from vibro_sweep.oscillator.contact_laws.compliant import StopLaw
 from vibro_sweep.oscillator.stops import NUMBERS, compliance_of
 from vibro_sweep.plotting.measured import draw_measured
 from vibro_sweep.plotting.picture_files import PlotError
@@ -187,8 +188,8 @@ class DrawnSweep:
         b, offset = self.number("b", place), self.number("offset", place) or 0.0
         return {} if b is None else {side: offset + side * b for side in self.sides}
 
-    def compliance(self, side: int, place) -> tuple[float, float, float] | None:
-        """Stiffness, damping and preload of the stop on this side (+1 right, -1 left); None of a rigid one."""
+    def compliance(self, side: int, place) -> StopLaw | None:
+        """The law of the stop on this side (+1 right, -1 left); None of a rigid one."""
         return compliance_of({name: self.number(name, place) for name in NUMBERS}, _SIDES[side])
 
     @property

@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from vibro_sweep.oscillator.contact_laws.compliant import StopLaw
 from vibro_sweep.oscillator.stop_force import force_of
 
 
@@ -15,7 +16,7 @@ class Motion:
     states : x1, v1, ... -> (m,), NaN where not known; `gap` and `gap_velocity` beside them where the gap is not x1
     impacts : rows (t, side, velocity of the gap before, after), (k, 4)
     stops : side (+1 right, -1 left) -> where the stop stands
-    laws : side -> stiffness, damping and preload of a compliant stop
+    laws : side -> law of a compliant stop
     by_force : whether a contact ends where its force is zero
     """
 
@@ -24,7 +25,7 @@ class Motion:
     states: dict[str, np.ndarray]
     impacts: np.ndarray
     stops: dict[int, float]
-    laws: dict[int, tuple[float, float, float]]
+    laws: dict[int, StopLaw]
     by_force: bool
 
     def __getitem__(self, name: str) -> np.ndarray:
@@ -48,7 +49,10 @@ class Motion:
             name: values * (velocity if name == "gap_velocity" else of.get(name[0], length))
             for name, values in self.states.items()
         }
-        laws = {side: (k * force / length, c * force / velocity, p * force) for side, (k, c, p) in self.laws.items()}
+        laws = {
+            side: law._replace(k=law.k * force / length, c=law.c * force / velocity, p=law.p * force)
+            for side, law in self.laws.items()
+        }
         stops = {side: stop * length for side, stop in self.stops.items()}
         impacts = self.impacts * np.array([time, 1.0, velocity, velocity])
         return replace(self, t=self.t * time, states=states, impacts=impacts, stops=stops, laws=laws)

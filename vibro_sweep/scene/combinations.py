@@ -5,6 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from vibro_sweep.oscillator.contact_laws.compliant import LAW as COMPLIANT
+from vibro_sweep.oscillator.contact_laws.compliant import StopLaw
 from vibro_sweep.oscillator.oscillator import Oscillator
 from vibro_sweep.oscillator.stops import DAMPER_ALONE, NOT_PRESSED, why_rigid
 from vibro_sweep.tables.exponents import LEAST_RECORD
@@ -74,12 +75,10 @@ def _settle_problems(orbit: Form) -> list[str]:
 def stop_problems(sweep: Mapping[str, np.ndarray], system: Oscillator) -> list[str]:
     """The problems of swept stiffnesses of stops: 0 is that of a damper alone."""
     problems, numbers = [], system.numbers
-    for stiffness, *others in COMPLIANT.names.values():
-        if stiffness not in sweep or sweep[stiffness].min() != 0:
-            continue
-        damping, preload = (sweep.get(name, np.array(numbers.get(name) or 0.0)) for name in others)
-        if damping.min() == 0 or preload.max() > 0:
-            problems.append(problem(f"sweep.{stiffness}", 0, f"must be > 0 {DAMPER_ALONE}"))
+    for names in COMPLIANT.names.values():
+        law = StopLaw(*(sweep.get(name, np.array(numbers.get(name) or 0.0)) for name in names))
+        if names[0] in sweep and law.k.min() == 0 and (law.c.min() == 0 or law.p.max() > 0):
+            problems.append(problem(f"sweep.{names[0]}", 0, f"must be > 0 {DAMPER_ALONE}"))
     return problems
 
 

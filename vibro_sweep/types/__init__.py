@@ -18,6 +18,7 @@ from vibro_sweep.analysis.windows.window import Window, Windows
 from vibro_sweep.driver.cost import Estimate
 from vibro_sweep.driver.sweep import RunReport
 from vibro_sweep.live.served_page import LivePage
+from vibro_sweep.oscillator.contact_laws.compliant import StopLaw
 from vibro_sweep.oscillator.family import Family
 from vibro_sweep.oscillator.grazing import Grazing
 from vibro_sweep.oscillator.linear import Linear, LinearContact
@@ -54,6 +55,7 @@ __all__ = [
     "SpecialPoint",
     "Start",
     "Status",
+    "StopLaw",
     "Trajectory",
     "Units",
     "Unvisited",

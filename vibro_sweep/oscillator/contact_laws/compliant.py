@@ -1,6 +1,7 @@
 """The compliant stop: a spring and a damper side by side, without mass, which a preload may press together."""
 
 from dataclasses import replace
+from typing import NamedTuple
 
 from vibro_sweep.oscillator.contact_laws.contact_law import Choice, ContactLaw
 from vibro_sweep.tables.quantity import NOT_NEGATIVE, Parameter, Range
@@ -23,6 +24,25 @@ PRELOAD = Parameter(
     r"p_{\mathrm{stop}}", "N", MODERATE, optional=True,
 )  # fmt: skip
 NUMBERS = (STIFFNESS, DAMPING, PRELOAD)
+
+
+class StopLaw(NamedTuple):
+    """The force of a compliant stop, k delta + c delta' + p; delta: how far the mass is behind it. 0 of a rigid one.
+
+    k, c, p : stiffness, damping and preload
+
+    Examples
+    --------
+    >>> import vibro_sweep as vs
+    >>> system = vs.Oscillator.named("one_mass", zeta=0.05, F=1, omega=0.8, b=0.3, k_stop=50, c_stop=0.1)
+    >>> system.linear.contacts[0].law(1)
+    StopLaw(k=50.0, c=0.1, p=0.0)
+    """
+
+    k: float
+    c: float
+    p: float
+
 
 LAW = ContactLaw(
     name="compliant",
