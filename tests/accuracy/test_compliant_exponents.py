@@ -41,15 +41,15 @@ def test_exponents_where_vectors_find_no_directions(seed):
 
 
 @pytest.mark.slow
-def test_exponents_of_twenty_orbits_and_one_of_stiff_contacts():
-    counted, wrong = searched(compliant_exponents.study, [*range(22), 38])
-    assert wrong == [] and counted["precise"] >= 18
+def test_exponents_of_eight_orbits_and_one_of_stiff_contacts():
+    counted, wrong = searched(compliant_exponents.study, [*range(1, 9), 38])
+    assert wrong == [] and counted["precise"] >= 7
 
 
 @pytest.mark.slow
 def test_exponents_with_stops_that_are_touched_while_they_relax():
-    counted, wrong = searched(compliant_exponents.study_of_relaxing, range(20))
-    assert wrong == [] and counted["relaxing"] >= 10
+    counted, wrong = searched(compliant_exponents.study_of_relaxing, range(8))
+    assert wrong == [] and counted["relaxing"] >= 4
 
 
 @pytest.mark.parametrize("seeds", [[1], *slow_cases([0, *range(2, 16)])], ids=len)
@@ -58,7 +58,7 @@ def test_sums_of_exponents(seeds):
     assert wrong == [] and counted["counted"] > 10 * len(seeds)
 
 
-@pytest.mark.parametrize("count", slow_cases(1, 20))
+@pytest.mark.parametrize("count", slow_cases(1, 6))
 def test_sums_with_stops_that_are_touched_while_they_relax(count):
     counted, wrong = searched(compliant_sums.study_of_relaxing, range(count))
     assert wrong == [] and counted["points"] > 40 * count

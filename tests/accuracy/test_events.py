@@ -95,7 +95,7 @@ def test_the_comparison_sees_what_is_wrong_with_an_event(kind, fault):
 
 
 @pytest.mark.parametrize(
-    ("masses", "draws", "least"), slow_cases((2, 1, 1), (1, 6, 6), (2, 9, 9), (3, 15, 15), (5, 8, 8), (8, 7, 7))
+    ("masses", "draws", "least"), slow_cases((2, 1, 1), (1, 3, 3), (2, 4, 4), (3, 6, 6), (5, 3, 3), (8, 3, 3))
 )
 def test_impacts_of_random_oscillators(masses, draws, least):
     counted, wrong = searched(study_of_any, range(MASSES.index(masses), draws * len(MASSES), len(MASSES)))
@@ -106,13 +106,13 @@ FEW_MASSES = [seed for seed in range(18) if drawn_compliant(seed)[0].masses <= 2
 
 
 # 205 and 936 bounce on a preload ever lower
-@pytest.mark.parametrize("seeds", slow_cases(FEW_MASSES, [*range(60), 205, 936]), ids=len)
+@pytest.mark.parametrize("seeds", slow_cases(FEW_MASSES, [*range(16), 205, 936]), ids=len)
 def test_contacts_of_random_oscillators(seeds):
     counted, wrong = searched(study_of_compliant, seeds)
     assert wrong == [] and counted["contacts"] > 5 * len(seeds)
 
 
-@pytest.mark.parametrize("seeds", slow_cases(FEW_MASSES, range(20)), ids=len)
+@pytest.mark.parametrize("seeds", slow_cases(FEW_MASSES, range(10)), ids=len)
 def test_sections_of_sweeps(seeds):
     """Of eight orbits side by side, over six periods."""
     counted, wrong = searched(study_of_sections, seeds)
@@ -128,10 +128,10 @@ def test_orbits_over_the_whole_range():
 
 
 @pytest.mark.slow
-def test_two_hundred_orbits_over_the_whole_range():
+def test_forty_orbits_over_the_whole_range():
     """And one of which a contact was once missed."""
-    counted, wrong = searched(study, [*range(200), 2101])
-    assert wrong == [] and counted["accepted"] > 180 and counted["checked"] > 20 * counted["accepted"]
+    counted, wrong = searched(study, [*range(2, 42), 2101])
+    assert wrong == [] and counted["accepted"] > 36 and counted["checked"] > 20 * counted["accepted"]
 
 
 STIFF = [dict(mu_m=1e-3, zeta=0.3), dict(mu_m=1e-4), dict(mu_k=1e6), dict(omega=1e-4), dict(mu_m=1e-6)]

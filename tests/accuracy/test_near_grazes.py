@@ -21,8 +21,8 @@ def rows_of(masses: int, flights: int):
 @pytest.mark.parametrize("masses", slow_cases(*MASSES))
 def test_none_missed_and_none_invented(masses):
     """Among flights in every decade of distances from the stop."""
-    rows = rows_of(masses, 10_000)
-    assert rows[..., 3].sum() > 5_000 and (rows[..., 0] > 0).all()
+    rows = rows_of(masses, 4_000)
+    assert rows[..., 3].sum() > 2_000 and (rows[..., 0] > 0).all()
     assert rows[..., 1:3].sum() == 0
 
 

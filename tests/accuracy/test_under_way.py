@@ -118,7 +118,7 @@ def concluded(system: vs.Oscillator, time: float, length: float):
     return whole, real, vs.periodic_orbit(system, itinerary="R")
 
 
-@pytest.mark.parametrize("seed", [*range(3), *slow_cases(*range(3, 100))])
+@pytest.mark.parametrize("seed", [*range(3), *slow_cases(*range(3, 23))])
 def test_units_change_nothing(seed):
     """Section points are compared where numbers are not rounded in another way."""
     was, numbers, orbit = concluded(drawn(np.random.default_rng(seed)), 1.0, 1.0)

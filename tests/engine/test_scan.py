@@ -173,7 +173,7 @@ def test_single_precision():
 
 @pytest.mark.slow
 def test_many_flights():
-    """Of four oscillators."""
+    """Of two oscillators."""
     rng = default_rng(2025)
-    rows = sum(judge_flights(16000, rng) for _ in range(4))
-    assert rows[..., 3].sum() > 1000 and rows[..., (1, 2, 4)].sum() == 0
+    rows = sum(judge_flights(16000, rng) for _ in range(2))
+    assert rows[..., 3].sum() > 500 and rows[..., (1, 2, 4)].sum() == 0

@@ -48,7 +48,7 @@ def drawn(rng: np.random.Generator) -> tuple[vs.Oscillator, str]:
     return vs.Oscillator.named(name, **own, **stops), rng.choice(sorted(of_all))
 
 
-@pytest.mark.parametrize("count", [40, *slow_cases(1000)])
+@pytest.mark.parametrize("count", [40, *slow_cases(300)])
 def test_points_of_a_stack_are_those_of_its_oscillators(count):
     rng, different = np.random.default_rng(3), 0
     for _ in range(count):
@@ -64,7 +64,7 @@ def test_points_of_a_stack_are_those_of_its_oscillators(count):
     assert different > 3 * count
 
 
-@pytest.mark.parametrize("count", [40, *slow_cases(1000)])
+@pytest.mark.parametrize("count", [40, *slow_cases(300)])
 def test_a_stack_is_built_as_each_oscillator_is(count):
     rng = np.random.default_rng(4)
     for _ in range(count):

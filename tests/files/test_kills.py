@@ -16,7 +16,6 @@ from support import kills
         ("branches", "1 worker"),
         ("curves", "Dask"),
         ("compliant", "Dask"),
-        ("compliant, follow", "2 workers"),
     ],
 )
 def test_killed_at_random_moments(name, by, tmp_path, monkeypatch):

@@ -38,7 +38,7 @@ def test_stable_pieces_agree_with_simulation(study, seeds):
         pytest.param(
             [143], MODELS, 2, marks=pytest.mark.slow, id="from a fold, where Newton's method leads to another branch"
         ),
-        pytest.param(range(40), MODELS, 30, marks=pytest.mark.slow, id="forty"),
+        pytest.param(range(10), MODELS, 7, marks=pytest.mark.slow, id="ten"),
     ],
 )
 def test_the_same_points_from_all_starts_and_steps(seeds, models, least):

@@ -27,7 +27,7 @@ POWERS = {  # of kg, m and s in the unit of a number
 }
 SHOWN = "mm,Hz,N,kg,s,W"  # without W the power is in W or \N{MICRO SIGN}W: what is not named stays in the system's own
 CLOSE = 1e-8
-MACHINES, SEEN, DRAWN = range(20), (0, 6, 12), (0, 6)  # windows and pictures, which take longest, of some
+MACHINES, SEEN, DRAWN = range(10), (0, 6), (0,)  # windows and pictures, which take longest, of some
 NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?")
 ROUNDING = ("_error", "_residual", "approached_distance", "approached_factor")  # names of what says how large it is
 
