@@ -85,7 +85,7 @@ class LinearContact(NamedTuple):
         return np.where(np.asarray(sides) > 0, self.R_high, self.R_low)
 
     def law(self, side: int) -> StopLaw:
-        """Of the stop on this side (+1 high, -1 low)."""
+        """The law of the stop on this side (+1 high, -1 low)."""
         end = "high" if side > 0 else "low"
         return StopLaw(*[getattr(self, f"{name}_{end}") for name in StopLaw._fields])
 
