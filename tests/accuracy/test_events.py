@@ -128,10 +128,10 @@ def test_orbits_over_the_whole_range():
 
 
 @pytest.mark.slow
-def test_forty_orbits_over_the_whole_range():
+def test_twenty_orbits_over_the_whole_range():
     """And one of which a contact was once missed."""
-    counted, wrong = searched(study, [*range(2, 42), 2101])
-    assert wrong == [] and counted["accepted"] > 36 and counted["checked"] > 20 * counted["accepted"]
+    counted, wrong = searched(study, [*range(2, 22), 2101])
+    assert wrong == [] and counted["accepted"] > 18 and counted["checked"] > 20 * counted["accepted"]
 
 
 STIFF = [dict(mu_m=1e-3, zeta=0.3), dict(mu_m=1e-4), dict(mu_k=1e6), dict(omega=1e-4), dict(mu_m=1e-6)]

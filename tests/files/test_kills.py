@@ -1,4 +1,4 @@
-"""Runs of every kind of file killed at random moments and resumed."""
+"""Runs killed at random moments and resumed; those of every kind of file by `tools.search kills`."""
 
 import pytest
 from support import kills
@@ -11,10 +11,7 @@ from support import kills
         ("sweep", "1 worker"),
         ("follow", "2 workers"),
         ("plane", "Dask"),
-        ("linear", "2 workers"),
-        ("windows", "2 workers"),
         ("branches", "1 worker"),
-        ("curves", "Dask"),
         ("compliant", "Dask"),
     ],
 )

@@ -99,6 +99,7 @@ def periods(result: DrawnSweep) -> Panels:
     return Panels(result.title("Periods"), 3.0, draw)
 '''
 TABLE, TESTS = "tables/bifurcations.py", "engine/continuation/branch_tests.py"
+SPEEDS = {"slow": 0.2, "fast": 0.25}
 PENDULUM = '''"""A pendulum that strikes walls: one number, its length."""
 
 import numpy as np
@@ -125,8 +126,8 @@ MODEL = Model(
 '''
 
 
-def with_edits(folder, edits, program, files=()):
-    """What a program finds with the package and these edits; files : added, as path and text"""
+def edited(folder, edits, files=()):
+    """A copy of the package with these edits; files : added, as path and text"""
     shutil.copytree(ROOT / "vibro_sweep", folder / "vibro_sweep", ignore=shutil.ignore_patterns("__pycache__"))
     for name, old, new in edits:
         path = folder / "vibro_sweep" / name
@@ -135,6 +136,10 @@ def with_edits(folder, edits, program, files=()):
         path.write_text(text.replace(old, new))
     for name, text in files:
         (folder / "vibro_sweep" / name).write_text(text)
+
+
+def found(folder, program):
+    """What a program finds with the package in this folder."""
     (folder / "program.py").write_text(BEGIN + program + "print(json.dumps([special, vs.__file__]))")
     environment = os.environ | {"PYTHONPATH": str(folder), "NUMBA_CACHE_DIR": str(folder / "kernels")}
     done = subprocess.run([sys.executable, "program.py"], cwd=folder, env=environment, capture_output=True, text=True)
@@ -144,49 +149,71 @@ def with_edits(folder, edits, program, files=()):
     return special
 
 
-def test_a_parameter_is_a_row_and_a_formula(tmp_path):
+def parameter():
     """A spring from the first mass to the ground."""
     table, last = "oscillator/models/two_mass.py", '              free_motion=True, optional=True, follows="mu_k"),\n'
     row = '    Parameter("mu_g", "third spring", "", "g", "1", NOT_NEGATIVE, default=0.0, free_motion=True),\n'
-    edits = [
+    return [
         (table, last, last + row),
         (table, "tau, mu_c=None, **stops", "tau, mu_c=None, mu_g=0.0, **stops"),
         (table, "K=matrix([[1, -1], [-1, 1 + mu_k]])", "K=matrix([[1 + mu_g, -1], [-1, 1 + mu_k]])"),
     ]
-    errors, *seen = with_edits(tmp_path, edits, PARAMETER)
+
+
+def observable():
+    """Its row stands in the architecture page."""
+    row, line = '    _impacts("sticking_time",', "    result.sticking_time = o.rest_time\n"
+    new = '    _impacts("chatters", "chatter sequences", "chatter sequences that end in sticking", dtype="i8"),\n'
+    added = "    result.chatters = o.chatters\n"
+    return [("tables/observables.py", row, new + row), ("engine/observed/observe.py", line, line + added)]
+
+
+def kind_of_picture():
+    row = '    "convergence": "convergence.convergence",\n'
+    return [("tables/picture_kinds.py", row, row + '    "periods": "periods.periods",\n')]
+
+
+def passed_speeds():
+    row, line = '    Bifurcation("closed", ', "    x[TEST.above] = -1.0\n"
+    rows = "".join(f'    Bifurcation("{name}", "the first impact has this speed", test="{name}"),\n' for name in SPEEDS)
+    tests = "".join(f"    x[TEST.{name}] = abs(b.events[0].motion[0]) - {value}\n" for name, value in SPEEDS.items())
+    return [(TABLE, row, rows + row), (TESTS, line, line + tests)]
+
+
+@pytest.fixture(scope="module")
+def package(tmp_path_factory):
+    """A copy with all that is added here, so that its kernels are compiled once."""
+    folder = tmp_path_factory.mktemp("package")
+    edits = [*parameter(), *observable(), *kind_of_picture(), *passed_speeds()]
+    edited(folder, edits, [("oscillator/models/pendulum.py", PENDULUM), ("plotting/periods.py", PERIODS)])
+    return folder
+
+
+def test_a_parameter_is_a_row_and_a_formula(package):
+    errors, *seen = found(package, PARAMETER)
     assert max(errors) < 1e-11 and seen == [True] * 3
 
 
-def test_an_observable_is_a_row_and_a_line(tmp_path):
-    """Its row stands in the architecture page."""
-    table, kernel = "tables/observables.py", "engine/observed/observe.py"
-    row, line = '    _impacts("sticking_time",', "    result.sticking_time = o.rest_time\n"
-    new = '    _impacts("chatters", "chatter sequences", "chatter sequences that end in sticking", dtype="i8"),\n'
-    edits = [(table, row, new + row), (kernel, line, line + "    result.chatters = o.chatters\n")]
-    counts, text, kind = with_edits(tmp_path, edits, OBSERVABLE)
+def test_an_observable_is_a_row_and_a_line(package):
+    counts, text, kind = found(package, OBSERVABLE)
     assert counts[0] >= 40 and counts[1] == 0 and (text, kind) == ("Chatter sequences that end in sticking.", "<i8")
 
 
-def test_a_model_is_one_file(tmp_path):
-    error, same = with_edits(tmp_path, [], MODEL, [("oscillator/models/pendulum.py", PENDULUM)])
+def test_a_model_is_one_file(package):
+    error, same = found(package, MODEL)
     assert error < 1e-9 and same
 
 
-def test_a_picture_is_a_function_and_a_row(tmp_path):
-    table, row = "tables/picture_kinds.py", '    "convergence": "convergence.convergence",\n'
-    edits = [(table, row, row + '    "periods": "periods.periods",\n')]
-    label, *drawn, last, in_schema = with_edits(tmp_path, edits, PICTURE, [("plotting/periods.py", PERIODS)])
+def test_a_picture_is_a_function_and_a_row(package):
+    label, *drawn, last, in_schema = found(package, PICTURE)
     assert label == "clearance $b$" and drawn == [1, 1, True] and last == "periods" and in_schema
-    assert (tmp_path / "periods.svg").stat().st_size > 1000
+    assert (package / "periods.svg").stat().st_size > 1000
 
 
-def test_a_speed_that_an_impact_passes_is_a_row_and_a_line(tmp_path):
-    row, line, values = '    Bifurcation("closed", ', "    x[TEST.above] = -1.0\n", {"slow": 0.2, "fast": 0.25}
-    rows = "".join(f'    Bifurcation("{name}", "the first impact has this speed", test="{name}"),\n' for name in values)
-    tests = "".join(f"    x[TEST.{name}] = abs(b.events[0].motion[0]) - {value}\n" for name, value in values.items())
-    found = with_edits(tmp_path, [(TABLE, row, rows + row), (TESTS, line, line + tests)], FOLLOW)
-    assert [kind for kind, *_ in found] == ["graze", "fast", "slow", "pitchfork", "graze"]
-    assert found[2][2] / found[1][2] == pytest.approx(0.8, rel=1e-12)
+def test_a_speed_that_an_impact_passes_is_a_row_and_a_line(package):
+    special = found(package, FOLLOW)
+    assert [kind for kind, *_ in special] == ["graze", "fast", "slow", "pitchfork", "graze"]
+    assert special[2][2] / special[1][2] == pytest.approx(0.8, rel=1e-12)
 
 
 def test_a_pitchfork_is_taken_out_of_the_table_alone(tmp_path):
@@ -198,5 +225,5 @@ def test_a_pitchfork_is_taken_out_of_the_table_alone(tmp_path):
             r' {4}Point\("pitchfork_graze".*?\),\n(?= {4}P)',
         )
     ]
-    found = with_edits(tmp_path, [(TABLE, row, "") for row in rows], FOLLOW)
-    assert [kind for kind, *_ in found] == ["graze", "graze"]
+    edited(tmp_path, [(TABLE, row, "") for row in rows])
+    assert [kind for kind, *_ in found(tmp_path, FOLLOW)] == ["graze", "graze"]

@@ -10,7 +10,9 @@ from support import branch_rows, cases
 SAMPLE = 24  # rows that fast tests follow with other steps and from other orbits
 TABLE = {row.id: row.values[0] for row in cases.rows("branches")}
 each_row = pytest.mark.parametrize("row", cases.rows("branches"))
-sampled_rows = pytest.mark.parametrize("row", cases.rows("branches", SAMPLE))
+some_rows = pytest.mark.parametrize(
+    "row", cases.rows("branches", SAMPLE, one_in=4)
+)  # all: `tools.search branches-of-table`
 
 
 @functools.cache
@@ -27,20 +29,16 @@ def test_special_points(row):
     assert not branch_rows.imprecise(row, branch)
 
 
-@sampled_rows
+@some_rows
 def test_the_same_points_with_other_steps(row):
-    for step in row.get("steps", branch_rows.STEPS):
-        assert not branch_rows.differences(row, branch_rows.follow(row, followed(row["id"])[0], step)), step
+    assert not branch_rows.with_other_steps(row, followed(row["id"])[0])
 
 
-@sampled_rows
+@some_rows
 def test_the_same_points_from_other_orbits_of_the_branch(row):
     _, branch = followed(row["id"])
-    compared, kind = 0, branch_rows.kind(branch_rows.middle(branch))
-    for words, other in branch_rows.starts(row, branch):
-        if branch_rows.kind(other) == kind:
-            assert not branch_rows.differences(row, branch_rows.follow(row, other)), words
-            compared += 1
+    compared, wrong = branch_rows.from_other_orbits(row, branch)
+    assert not wrong
     assert compared >= min(2, branch.points.sizes["point"] - 2)
 
 

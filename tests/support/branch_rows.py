@@ -9,13 +9,15 @@ steps : lengths of steps that give the same list
 not_from : types of special points from which another branch is followed, of which `why` tells
 """
 
+from collections import Counter
 from itertools import chain
 
 import numpy as np
 
 import vibro_sweep as vs
-from support import conditions
+from support import cases, conditions
 from support.drawn_branches import Case
+from support.searching import Report
 
 POINTS = 3  # from which a branch is followed again
 STEPS = (0.5, 2)  # of a row that names none
@@ -53,6 +55,38 @@ def starts(row: dict, branch):
     count = branch.points.sizes["point"]
     for k in np.unique(np.linspace(0, count - 1, row.get("points", POINTS) + 2).astype(int)[1:-1]).tolist():
         yield f"from point {k}", branch.orbit(k)
+
+
+def with_other_steps(row: dict, orbit) -> list[str]:
+    """What a row's branch has otherwise when it is followed with other steps."""
+    return [
+        f"step {step}: {words}"
+        for step in row.get("steps", STEPS)
+        for words in differences(row, follow(row, orbit, step))
+    ]
+
+
+def from_other_orbits(row: dict, branch) -> tuple[int, list[str]]:
+    """(starts, words) of what it has otherwise when it is followed from other orbits of the same kind."""
+    counted, wrong, same = 0, [], kind(middle(branch))
+    for start, other in starts(row, branch):
+        if kind(other) == same:
+            wrong += [f"{start}: {words}" for words in differences(row, follow(row, other))]
+            counted += 1
+    return counted, wrong
+
+
+def nth_row(table: str, k: int) -> dict:
+    """The k-th row of tests/cases/TABLE.yaml."""
+    return cases.rows(table)[k].values[0]
+
+
+def study(k: int) -> Report:
+    """The k-th row of tests/cases/branches.yaml, with all steps and from all starts."""
+    row = nth_row("branches", k)
+    orbit = orbit_of(row)
+    counted, wrong = from_other_orbits(row, follow(row, orbit))
+    return Report(Counter(branches=1, starts=counted), with_other_steps(row, orbit) + wrong)
 
 
 def middle(branch):

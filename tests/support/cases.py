@@ -11,16 +11,17 @@ from . import ROOT, spread
 FOLDER = ROOT / "tests" / "cases"
 
 
-def rows(name: str, sample: int | None = None, folder: Path = FOLDER) -> list:
+def rows(name: str, sample: int | None = None, folder: Path = FOLDER, one_in: int = 1) -> list:
     """The rows of a table, each a dict, with their ids; those with `slow: true` have the mark.
 
-    Of a long table `sample` rows, spread over all of it, are fast, and the others slow.
+    Of a long table `sample` rows, spread over all of it, are fast, and one in `one_in` of the others slow.
     """
     table = read((folder / f"{name}.yaml").read_text())
     fast = spread(len(table) if sample is None else sample, len(table))
     return [
         pytest.param(row, id=row["id"], marks=[pytest.mark.slow] if row.get("slow") or k not in fast else [])
         for k, row in enumerate(table)
+        if k in fast or k % one_in == 0
     ]
 
 

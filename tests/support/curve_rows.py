@@ -31,6 +31,7 @@ from support.in_digits import (
     without,
 )
 from support.random_curves import special_at
+from support.searching import Report, new_report
 
 STEPS = (0.5, 2)  # of a row that names none
 POINTS = 4
@@ -106,6 +107,41 @@ def starts(row: dict, curve, special):
         crossed = special_at(curve, k, special.orbit)
         if crossed is not None:
             yield f"point {k}", crossed
+
+
+def with_other_steps(row: dict, special) -> list[str]:
+    """What a row's curve has otherwise when it is followed with other steps."""
+    return [
+        f"step {step}: {words}"
+        for step in row.get("steps", STEPS)
+        for words in differences(row, follow(row, special, step))
+    ]
+
+
+def from_other_points(row: dict, curve, special) -> tuple[int, list[str]]:
+    """(starts, words) of what it has otherwise when it is followed from other points of it."""
+    counted, wrong = 0, []
+    for start, other in starts(row, curve, special):
+        wrong += [f"{start}: {words}" for words in differences(row, follow(row, other))]
+        counted += 1
+    return counted, wrong
+
+
+def study(k: int) -> Report:
+    """The k-th row of tests/cases/curves.yaml, with all steps, from all starts, and in 30 digits."""
+    row = branch_rows.nth_row("curves", k)
+    special = first_point(row)
+    curve = follow(row, special)
+    report = new_report(curves=1)
+    report.wrong.extend(with_other_steps(row, special))
+    for name, compare in (("starts", from_other_points), ("points", points_off)):
+        counted, wrong = compare(row, curve, special)
+        report.counted[name] += counted
+        report.wrong.extend(wrong)
+    counted, wrong = off_in_digits(row, curve)
+    report.counted["in_digits"] += counted
+    report.wrong.extend(wrong)
+    return report
 
 
 def switched(curve, special):

@@ -105,16 +105,16 @@ def link(code: Path, entry: str, module: Path) -> None:
     subprocess.run([*zig, *flags, str(code), "-o", str(module)], check=True, capture_output=True, text=True)
 
 
-def make(kind: Kind, module: Path) -> None:
-    """Write the module of a kind."""
+def make(text: str, module: Path) -> None:
+    """Write the module of a kernel's text."""
     llvm.initialize_all_targets()
     llvm.initialize_all_asmprinters()
     wasm = llvm.Target.from_triple("wasm32-unknown-unknown")
-    data, entry = object_of(kernel_text(kind), wasm.create_target_machine(features=FEATURES, opt=2, reloc="static"))
+    data, entry = object_of(text, wasm.create_target_machine(features=FEATURES, opt=2, reloc="static"))
     code = module.with_suffix(".o")
     code.write_bytes(data)
     link(code, entry, module)
 
 
 if __name__ == "__main__":
-    make(kind_named(sys.argv[1]), Path(sys.argv[2]))
+    make(kernel_text(kind_named(sys.argv[1])), Path(sys.argv[2]))
