@@ -42,10 +42,11 @@ export class DiagramData {
     let at = 0;
     for (let i = 0, n = 0; i < length; i++) {
       const column = frame.first + i * frame.step;
+      const late = preview && this.fresh[column] === 2; // the numbers themselves came first, from another worker
       for (let s = 0; s < here; s++, n++) {
         const to = column * this.starts + (frame.first_start ?? 0) + s;
         const count = arrays.count[n];
-        this.dots[to] = arrays.y.subarray(at, at + count);
+        if (!late) this.dots[to] = arrays.y.subarray(at, at + count);
         at += count;
         if (preview) continue;
         this.status[to] = arrays.status[n];

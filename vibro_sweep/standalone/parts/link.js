@@ -10,7 +10,7 @@ export const SHARING = "Copied. Who opens it needs this file, at the place that 
 export const WAITING = "Computing";
 
 const OTHERWISE = "That is in the address, behind #; without it the page opens as it was made.";
-const PREVIEW = { columns: 256, transient: 300, record: 50 };
+const PREVIEW = { columns: 256, parts: 8, transient: 300, record: 50 };
 const WORKERS = Math.max(1, Math.min(8, navigator.hardwareConcurrency ?? 2));
 const PIECE = 64; // columns
 const RELAXING = 300; // forcing periods
@@ -123,7 +123,7 @@ export class Link {
       if (frame.last) this.complete = { view: JSON.stringify(view), diagram };
       this.on.answer(frame);
     };
-    const previews = diagram.previews(WORKERS), pieces = diagram.pieces();
+    const previews = diagram.previews(), pieces = diagram.pieces();
     for (const part of previews) this.enter(diagram.task(part, "preview"), say(part, "preview", () => false), failed);
     let left = pieces.reduce((sum, chain) => sum + chain.length, 0);
     const go = (chain, n, begun) => { // parts of a chain one after the other
@@ -196,10 +196,11 @@ class Diagram {
     return { low: Number.isFinite(low) ? low : null, high: Number.isFinite(high) ? high : null, ...others };
   }
 
-  // columns of an early picture, for so many workers; those of a chain start each by itself
-  previews(workers) {
-    const step = Math.max(1, Math.ceil(this.columns / PREVIEW.columns)) * workers;
-    return Array.from({ length: workers }, (_, n) => part(n * (step / workers), step, this.columns, 0, this.starts)).filter(({ columns }) => columns.length);
+  // columns of an early picture, in parts, so that the first dots are there soon; those of a chain start each by itself
+  previews() {
+    const step = Math.max(1, Math.ceil(this.columns / PREVIEW.columns));
+    const parts = reversed(PREVIEW.parts).map((n) => part(n * step, PREVIEW.parts * step, this.columns, 0, this.starts));
+    return parts.filter(({ columns }) => columns.length);
   }
 
   // chains of parts: each part of its own, every n-th column; or the parts of a chain along the swept number
