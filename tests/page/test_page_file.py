@@ -126,6 +126,25 @@ window.Worker = class extends Own {
   }
 };
 """
+LATE = """
+Object.defineProperty(navigator, "hardwareConcurrency", { value: 2 });
+const Own = window.Worker, root = document.documentElement;
+let kept = false;
+window.Worker = class extends Own {
+  set onmessage(heard) {
+    super.onmessage = (event) => {
+      if (kept) return heard(event);
+      kept = true;
+      const clock = setInterval(() => {
+        if (root.dataset.state !== "final") return;
+        clearInterval(clock);
+        heard(event);
+        window.late = true;
+      }, 20);
+    };
+  }
+};
+"""
 
 
 def scene_of(name, **changes):
@@ -276,6 +295,19 @@ def test_it_shows_what_a_sweep_computes(browser, where, request, tmp_path, name)
     if others.sum() > 5:
         apart = np.abs(lyapunov - data.lyapunov.values)[others, 0]
         assert np.median(apart / np.hypot(errors, data.lyapunov_error.values)[others, 0]) < 2
+
+
+@pytest.mark.slow
+def test_a_preview_that_comes_last_changes_nothing(browser, tmp_path):
+    """A worker keeps its first answer until the diagram is there."""
+    path = vs.page(PAPER, tmp_path / "paper.html", bounds=(4.2, 7))
+    tab = opened(browser, with_script(path, LATE).as_uri())
+    drawn = tab.evaluate("document.documentElement.dataset.frame")
+    tab.wait_for("window.late")
+    tab.evaluate("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(true))))")
+    assert tab.evaluate(FINAL) and text_of(tab, "status").startswith("1000 values")
+    assert tab.evaluate("document.documentElement.dataset.frame") == drawn
+    tab.close()
 
 
 @pytest.mark.slow

@@ -45,6 +45,18 @@ NEAREST = """async ([x, y]) => {
   const found = orbitNear(data, { place: { dots, exponents }, exponentRange: [0, 2] }, state, x, y);
   return [found.column, found.start];
 }"""
+LATE = """async () => {
+  const { DiagramData } = await import("/diagram_data.js");
+  const data = new DiagramData({ columns: 4, starts: 1, middle: 0, record: 1 });
+  const frame = (kind, first, step, ...y) => {
+    const [count, status, period] = [Uint32Array, Int8Array, Int32Array].map((Type) => new Type(y.length).fill(1));
+    data.take({ kind, first, step, length: y.length, arrays: { count, status, period, y: Float32Array.from(y) } });
+  };
+  frame("piece", 1, 2, 10, 30);
+  frame("preview", 0, 1, 1, 2, 3, 4);
+  frame("piece", 0, 4, 50);
+  return data.dots.map(([y]) => y);
+}"""
 
 
 @pytest.fixture(scope="module")
@@ -138,6 +150,12 @@ def test_up_and_down_have_their_colours(browser, program):
         tab.wait_for_timeout(300)
         settle(tab)
         assert not tab.evaluate(PIXELS, [DOWN, LEGEND])
+
+
+def test_a_preview_that_is_late_replaces_no_numbers(browser, program):
+    """Workers of a page end their parts in any order."""
+    with opened(browser, program) as tab:
+        assert tab.evaluate(LATE) == [50, 10, 3, 30]
 
 
 def test_a_click_shows_the_orbit_of_the_nearest_dot(browser, program):

@@ -115,17 +115,17 @@ export class Link {
     const failed = (text) => this.swept === seq && this.on.answer({ type: "error", of: "sweep", seq, text });
     this.complete = null;
     if (diagram.refusal) return failed(diagram.refusal);
+    const pieces = diagram.pieces();
+    let left = pieces.reduce((sum, chain) => sum + chain.length, 0);
     const say = (part, kind, last) => (found, ms) => {
-      if (this.swept !== seq) return;
+      if (this.swept !== seq || (kind === "preview" && left === 0)) return; // a worker may be long over its first task
       diagram.keep(part, kind, found);
       const frame = diagram.frame(part, kind, found, ms);
       frame.last = last();
       if (frame.last) this.complete = { view: JSON.stringify(view), diagram };
       this.on.answer(frame);
     };
-    const previews = diagram.previews(), pieces = diagram.pieces();
-    for (const part of previews) this.enter(diagram.task(part, "preview"), say(part, "preview", () => false), failed);
-    let left = pieces.reduce((sum, chain) => sum + chain.length, 0);
+    for (const part of diagram.previews()) this.enter(diagram.task(part, "preview"), say(part, "preview", () => false), failed);
     const go = (chain, n, begun) => { // parts of a chain one after the other
       if (n === chain.length) return;
       const part = chain[n], told = say(part, "piece", () => --left === 0);
