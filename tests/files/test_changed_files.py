@@ -13,7 +13,7 @@ from support.fuzz_files import Tried, fuzz, fuzz_kind, judged
 from support.worker import Worker
 
 
-@pytest.mark.parametrize("name", [HALF, *slow_cases("sweep", "windows")])
+@pytest.mark.parametrize("name", [HALF, *slow_cases("sweep")])
 def test_changed_files(kinds, files, name):
     """A case of each kind of damage, before commands that compute nothing; with the others by `tools.search files`."""
     counts, failures = fuzz_kind(kinds, files, name, 1, slow=False, seed=1)

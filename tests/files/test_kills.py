@@ -12,7 +12,6 @@ from support import kills
         ("follow", "2 workers"),
         ("plane", "Dask"),
         ("branches", "1 worker"),
-        ("compliant", "Dask"),
     ],
 )
 def test_killed_at_random_moments(name, by, tmp_path, monkeypatch):
