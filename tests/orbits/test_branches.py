@@ -10,9 +10,8 @@ from support import branch_rows, cases
 SAMPLE = 24  # rows that fast tests follow with other steps and from other orbits
 TABLE = {row.id: row.values[0] for row in cases.rows("branches")}
 each_row = pytest.mark.parametrize("row", cases.rows("branches"))
-some_rows = pytest.mark.parametrize(
-    "row", cases.rows("branches", SAMPLE, one_in=4)
-)  # all: `tools.search branches-of-table`
+# `tools.search branches-of-table` follows all of them so
+some_rows = pytest.mark.parametrize("row", cases.rows("branches", SAMPLE, one_in=4))
 
 
 @functools.cache

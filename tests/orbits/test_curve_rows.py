@@ -10,9 +10,8 @@ from support import cases, curve_rows
 SAMPLE = 8  # rows that fast tests follow with other steps and from other points
 TABLE = {row.id: row.values[0] for row in cases.rows("curves")}
 each_row = pytest.mark.parametrize("row", cases.rows("curves", SAMPLE))
-some_rows = pytest.mark.parametrize(
-    "row", cases.rows("curves", SAMPLE, one_in=4)
-)  # all: `tools.search curves-of-table`
+# `tools.search curves-of-table` follows all of them so
+some_rows = pytest.mark.parametrize("row", cases.rows("curves", SAMPLE, one_in=4))
 SEEN = "folds from a degenerate flip"
 
 

@@ -76,14 +76,9 @@ def from_other_orbits(row: dict, branch) -> tuple[int, list[str]]:
     return counted, wrong
 
 
-def nth_row(table: str, k: int) -> dict:
-    """The k-th row of tests/cases/TABLE.yaml."""
-    return cases.rows(table)[k].values[0]
-
-
 def study(k: int) -> Report:
     """The k-th row of tests/cases/branches.yaml, with all steps and from all starts."""
-    row = nth_row("branches", k)
+    row = cases.nth("branches", k)
     orbit = orbit_of(row)
     counted, wrong = from_other_orbits(row, follow(row, orbit))
     return Report(Counter(branches=1, starts=counted), with_other_steps(row, orbit) + wrong)

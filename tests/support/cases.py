@@ -25,6 +25,11 @@ def rows(name: str, sample: int | None = None, folder: Path = FOLDER, one_in: in
     ]
 
 
+def nth(name: str, k: int) -> dict[str, Any]:
+    """The k-th row of a table."""
+    return rows(name)[k].values[0]
+
+
 def read(text: str) -> list[dict[str, Any]]:
     """The rows in a text. An entry with `rows` is a group, and gives its rows what else it has.
 

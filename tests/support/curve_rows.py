@@ -18,7 +18,7 @@ import numpy as np
 from reference.closed_orbit import ClosedOrbit
 
 import vibro_sweep as vs
-from support import branch_rows
+from support import branch_rows, cases
 from support.curves import chosen, error_at
 from support.in_digits import (
     SLOW_IN_SIMULATION,
@@ -129,7 +129,7 @@ def from_other_points(row: dict, curve, special) -> tuple[int, list[str]]:
 
 def study(k: int) -> Report:
     """The k-th row of tests/cases/curves.yaml, with all steps, from all starts, and in 30 digits."""
-    row = branch_rows.nth_row("curves", k)
+    row = cases.nth("curves", k)
     special = first_point(row)
     curve = follow(row, special)
     report = new_report(curves=1)
